@@ -172,6 +172,42 @@ CATALOGUE: dict[str, Kind] = {
     "stamps_missing": Kind("warning", "{samples} samples have no time stamp; declared missing"),
     "stamps_disordered": Kind("warning", "{samples} time stamps are repeated or decrease; left out"),
     # identification
+    "copied": Kind("warning", "is a copy of {other}; left out"),
+    "predicted": Kind("warning", "{share:.1%} of the samples are missing, predicted from the other channels"),
+    "short_for_lowest": Kind(
+        "warning",
+        "the record is short: {duration_s:.3g} s contain {cycles:.0f} cycles of {frequency_hz:.3g} Hz; "
+        "distrust modes of such low frequency, which need hundreds of cycles",
+    ),
+    "strong_below_band": Kind(
+        "warning",
+        "the band starts at {low_hz:.3g} Hz, but the record moves strongly near {strongest_hz:.2g} Hz; it "
+        "has too few cycles there to show a peak; use a longer record, or state lowest_frequency_hz",
+    ),
+    "components": Kind(
+        "info",
+        "identified from {components} components of {channels} channels, {share:.1%} of their power",
+    ),
+    "picks_leave_out": Kind(
+        "warning",
+        "the picks leave out modes at {frequencies_hz} Hz: what is fitted to the spectrum lacks them; pick "
+        "them too, or narrow the band",
+    ),
+    "pair_rotated": Kind(
+        "info",
+        "shapes of the pair at {low_hz:.4g} and {high_hz:.4g} Hz rotated within their plane to fore-aft and "
+        "side-side, as one record does not separate them (fore-aft share before: {low_share:.0%} and "
+        "{high_share:.0%})",
+    ),
+    "setups_joined": Kind(
+        "info",
+        "setups were joined before the identification by {references}; without uncertainty, of the checks on "
+        "modes only those on stable poles and a clear peak are made",
+    ),
+    "references_still": Kind(
+        "warning",
+        "{frequency_hz:.4g} Hz: the references hardly move; parts of the shape may not be consistent",
+    ),
     "peaks_above_band": Kind(
         "info",
         "above the band, which ends at {edge:.3g} Hz, the spectrum has {count}: {peaks} Hz; modes are not "
@@ -416,6 +452,7 @@ CATALOGUE: dict[str, Kind] = {
         "record is observed again",
     ),
     "identification": Kind("warning", "{text}"),
+    "identification_note": Kind("info", "{text}"),
     "no_mode_of_the_model": Kind("warning", "none of its {modes} identified modes is a mode of the model"),
     "record_mismatched": Kind(
         "warning",

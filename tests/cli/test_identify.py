@@ -134,6 +134,7 @@ def test_a_fault_of_the_whole_record_is_said_once(capsys: pytest.CaptureFixture[
             "records": ["r"],
             "modes": [mode],
             "warnings": [f"{f.subject}: {f.text}" for f in found],
+            "findings": [f.document for f in found],
             "quality": {"findings": [f.document for f in found]},
         }
     )

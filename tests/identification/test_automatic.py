@@ -70,8 +70,8 @@ def test_a_dead_channel_is_left_out_with_a_warning(tower, rng):
     y[3] = np.nan
     result = identify(replace(record, data=y))
     assert [c.name for c in result.channels] == ["a0", "a1", "a4", "a5", "a6", "a7"]
-    assert "a2 left out: constant" in result.warnings[0]
-    assert "a3 left out: 100% missing" in result.warnings[1]
+    assert "a2: is constant; left out" in result.warnings[0]
+    assert "a3: 100% of the samples are missing; left out" in result.warnings[1]
 
 
 def test_wind_speed_takes_no_part(tower, rng):

@@ -38,7 +38,7 @@ def test_the_modes_are_those_of_the_samples_in_one(record: Record, tmp_path: Pat
         near, same = (x[np.argmin(np.abs(x - true))] for x in (f, other))
         assert near == pytest.approx(true, rel=5e-3)
         assert near == pytest.approx(same, rel=5e-4)
-    (note,) = [text for text in whole.identification.notes if "above the band" in text]
+    (note,) = [note.text for note in whole.identification.notes if note.code == "peaks_above_band"]
     assert float(note.split("peak: ")[1].split(" Hz")[0]) == pytest.approx(F[2], rel=0.01)
     (spikes,) = [f for f in whole.quality.findings if f.code == "spikes"]
     assert spikes.params["share"] == pytest.approx(2 / record.data.shape[1], rel=1e-6)

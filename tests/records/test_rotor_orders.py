@@ -94,7 +94,9 @@ def test_a_ninth_order_of_a_measured_speed_is_no_mode_that_is_ok() -> None:
     turned = replace(record, data=record.data + np.vstack([ninth * swell, np.zeros_like(t)]))
     for measured, seen in ((record, []), (turned, [9])):
         examined = examine(measured, IdentificationSettings(refine=False))
-        informative = [f.params["order"] for f in examined.findings if f.code == "rotor_order_seen"]
+        informative = [
+            f.params["order"] for f in examined.identification.findings if f.code == "rotor_order_seen"
+        ]
         assert informative == seen
     passed = [m for m in examined.identification.modes if abs(m.frequency_hz - 1.35) < 0.02]
     assert all("rotor_order_passes" in [f.code for f in m.reasons] for m in passed)

@@ -91,7 +91,7 @@ def record() -> Record:
 @pytest.fixture(scope="session")
 def observation(record: Record) -> Examination:
     found = identify(record)
-    return Examination(record, assess(record), found, (), compare_methods(record, found))
+    return Examination(record, assess(record), found, compare_methods(record, found))
 
 
 def _certain(mode: ModalEstimate) -> ModalEstimate:

@@ -260,6 +260,16 @@ def test_an_observation_of_the_version_before_is_read(seen: Observation) -> None
     assert now.quality["findings"][0]["subject"] == "a"
 
 
+def test_sentences_of_an_older_identification_are_read_as_findings(seen: Observation) -> None:
+    document = json.loads(json.dumps(OBSERVATION.dump(seen)))
+    said = {"warnings": ["a: is constant; left out"], "notes": ["a pair was rotated"]}
+    old = {**document, "schema_version": 3, "identification": {**document["identification"], **said}}
+    now = OBSERVATION.load(old).identification
+    assert now.warnings == (*said["warnings"],)
+    assert [(f.severity, str(f)) for f in now.notes] == [("info", *said["notes"])]
+    assert OBSERVATION.load({**document, "schema_version": 3}).findings == seen.findings
+
+
 def test_intervals_of_95_percent_of_an_older_observation_are_read_as_90(seen: Observation) -> None:
     document = json.loads(json.dumps(OBSERVATION.dump(seen)))
     pairs = (("frequency_hz", "frequency_interval"), ("damping_ratio", "damping_ratio_interval"))
@@ -278,7 +288,7 @@ def test_documents_of_another_kind_or_version_are_refused(seen: Observation) -> 
     document = OBSERVATION.dump(seen)
     with pytest.raises(InputError, match="another kind of document"):
         STATE.load(document)
-    with pytest.raises(InputError, match=r"schema_version: unknown version.*allowed: 1 to 3"):
+    with pytest.raises(InputError, match=r"schema_version: unknown version.*allowed: 1 to 4"):
         OBSERVATION.load({**document, "schema_version": 99})
     with pytest.raises(InputError, match=r"identification\.modes\.0\.frequency_hz: not a number"):
         damaged = json.loads(json.dumps(document))

@@ -29,9 +29,10 @@ def show_one(document: Mapping[str, Any]) -> None:
         _print_limits(document["real_pole_limits"], bool(document["real_poles"]))
     _print_rejected(document["rejected"])
     _print_quality(quality)
-    told = {text for f in quality for text in (f["text"], f"{f['subject']}: {f['text']}")}
     say_all(document["notes"], "note")
-    say_all((text for text in document["warnings"] if text not in told), "warning")
+    limits = [f for f in document["findings"] if f["severity"] != "info"]
+    told = [f in quality for f in limits]
+    say_all((text for text, twice in zip(document["warnings"], told, strict=True) if not twice), "warning")
 
 
 def _print_quality(findings: Iterable[Mapping[str, Any]]) -> None:

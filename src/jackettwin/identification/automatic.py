@@ -130,9 +130,8 @@ def identify(
         spectrum=_spectrum(ready),
         settings=ready.settings,
         duration_s=record.duration_s,
-        warnings=(*ready.warnings, *missing, *map(str, chosen.findings)),
-        findings=chosen.findings,
-        notes=(*above, *((str(Finding("one_channel")),) if len(ready.channels) == 1 else ())),
+        findings=(*ready.findings, *missing, *chosen.findings),
+        notes=(*above, *((Finding("one_channel"),) if len(ready.channels) == 1 else ())),
         real_poles=relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(search.poles, c, record.name) for c in judged if c.objection is None),
     )
@@ -142,8 +141,8 @@ def identify(
 
 def _judged(
     search: PoleSearch, ready: PreparedRecord, settings: IdentificationSettings, wanted: Sequence[Pick]
-) -> tuple[list[Candidate], tuple[str, ...]]:
-    """Return the candidates, those of the picks if there are any, and warnings on what these leave out."""
+) -> tuple[list[Candidate], tuple[Finding, ...]]:
+    """Return the candidates, those of the picks if there are any, and findings on what these leave out."""
     if not wanted:
         return search.judged, ()
     picked = picked_clusters(search.poles, [c.cluster for c in search.judged], wanted)
@@ -229,8 +228,7 @@ def _decay(
     if not any(mode.status in (ModeStatus.OK, ModeStatus.UNCHECKED) for mode in found.modes):
         return transient(record, settings, impacts=True)
     finding = Finding("beside_knock", params={"fall": decay.fall, "used_s": decay.beside.duration_s})
-    found = replace(found, findings=(finding, *found.findings), warnings=(str(finding), *found.warnings))
-    return replace(decay, identified=found)
+    return replace(decay, identified=replace(found, findings=(finding, *found.findings)))
 
 
 def _with_likelihoods(

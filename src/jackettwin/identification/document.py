@@ -52,7 +52,7 @@ def identification_document(
         "quality": dict(quality),
         "warnings": list(found.warnings),
         "findings": [finding.document for finding in found.findings],
-        "notes": list(found.notes),
+        "notes": [str(f) for f in (*found.notes, *found.findings) if f.severity == "info"],
         **({} if compared is None else {"methods": _comparison_document(compared)}),
         "conditions": dict(conditions),
         "channels": channels_document(found.channels),

@@ -248,12 +248,10 @@ class Identification:
     spectrum: Spectrum
     settings: ResolvedSettings
     duration_s: float
-    warnings: tuple[str, ...] = ()
-    """Warnings, including the findings."""
     findings: tuple[Finding, ...] = ()
-    """Findings of the refinement."""
-    notes: tuple[str, ...] = ()
-    """Notes on what was done to the modes; not warnings."""
+    """Findings on the record as it was identified, and on the modes sought in it."""
+    notes: tuple[Finding, ...] = ()
+    """Findings on what was done to the modes, for those who read these."""
     real_poles: tuple[RealPole, ...] = ()
     """Relaxations, if requested."""
     picks: tuple[Pick, ...] = ()
@@ -263,6 +261,11 @@ class Identification:
         shown = (f"{m.frequency_hz:.4g} Hz {100 * m.damping_ratio:.2g} %" for m in self.modes[:_SHOWN])
         records = ", ".join(self.records[:_SHOWN])
         return f"Identification({records}; {len(self.modes)} modes: {', '.join(shown)})"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences of the findings that limit conclusions."""
+        return tuple(str(finding) for finding in self.findings if finding.severity != "info")
 
     def unchecked(self, method: str) -> Identification:
         """Return the same with the modes flagged as those of a method that does not check them."""

@@ -67,8 +67,8 @@ class Examination:
         Record as it was identified.
     quality : Quality
         Quality of the record as it was read.
-    findings : tuple of Finding
-        Findings of the preparation steps.
+    identification : Identification
+        Its findings begin with those of the preparation.
     comparison : Comparison or None
         The same modes by every method, if requested.
     """
@@ -76,7 +76,6 @@ class Examination:
     record: Record
     quality: Quality
     identification: Identification
-    findings: Findings = ()
     comparison: Comparison | None = None
 
 
@@ -156,15 +155,13 @@ def examine(
         found = _perhaps_folded(found, quality)
         found = doubted(found, doubts)
         found = along_axes(found) if in_axes else found
-        warnings = (str(f) for f in findings if f.severity != "info")
-        notes = (str(f) for f in findings if f.severity == "info")
-        found = replace(found, warnings=(*warnings, *found.warnings), notes=(*found.notes, *notes))
+        found = replace(found, findings=(*findings, *found.findings))
         compared = compare_methods(ready, found, settings) if compare and found.modes else None
         return Identified.of(found, compared)
 
     key = identified_key(ready, settings, picks, findings, compare=compare, in_rotor_axes=in_axes)
     made = kept(keep, IDENTIFIED, key, compute)
-    return Examination(ready, quality, made.found, findings, made.comparison)
+    return Examination(ready, quality, made.found, made.comparison)
 
 
 def made_ready(

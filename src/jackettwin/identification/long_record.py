@@ -64,8 +64,8 @@ class LongRecord:
     findings: Findings
     spectrum: Spectrum | None
 
-    def peaks_above(self, settings: IdentificationSettings, resolved: ResolvedSettings) -> tuple[str, ...]:
-        """Return the sentence on clear peaks above the band; none if the user set the band."""
+    def peaks_above(self, settings: IdentificationSettings, resolved: ResolvedSettings) -> Findings:
+        """Return the finding on clear peaks above the band; none if the user set the band."""
         if self.spectrum is None or settings.highest_frequency_hz is not None:
             return ()
         return peaks_in(self.spectrum, resolved)

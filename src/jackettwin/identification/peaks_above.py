@@ -32,8 +32,8 @@ NAMED = 6
 
 def peaks_above(
     record: Record, settings: IdentificationSettings, resolved: ResolvedSettings
-) -> tuple[str, ...]:
-    """Return the sentence on clear peaks above the band; none if the user set the band."""
+) -> tuple[Finding, ...]:
+    """Return the finding on clear peaks above the band; none if the user set the band."""
     if settings.highest_frequency_hz is not None:
         return ()
     spectrum = spectrum_above(record, resolved.highest_frequency_hz)
@@ -54,8 +54,8 @@ def spectrum_above(record: Record, edge_hz: float) -> Spectrum | None:
     return densities(detrend(record.select(names)).data, rate, length) if names else None
 
 
-def peaks_in(spectrum: Spectrum, resolved: ResolvedSettings) -> tuple[str, ...]:
-    """Return the sentence on clear peaks of densities above a band."""
+def peaks_in(spectrum: Spectrum, resolved: ResolvedSettings) -> tuple[Finding, ...]:
+    """Return the finding on clear peaks of densities above a band."""
     edge, top_hz = resolved.highest_frequency_hz, PASSED * float(spectrum.frequencies_hz[-1])
     inside = spectrum.frequencies_hz < top_hz
     found = clear_peaks_hz(spectrum.frequencies_hz[inside], spectrum.density[:, inside])
@@ -68,4 +68,4 @@ def peaks_in(spectrum: Spectrum, resolved: ResolvedSettings) -> tuple[str, ...]:
     params: dict[str, float | int | str | bool | None]
     count = "a clear peak" if len(apart) == 1 else f"{len(apart)} clear peaks"
     params = {"peaks": listed, "count": count, "edge": edge, "widen": f"{low:.2g},{top:.3g}"}
-    return (str(Finding("peaks_above_band", params=params)),)
+    return (Finding("peaks_above_band", params=params),)

@@ -97,8 +97,9 @@ def preger_document(
     InputError
         As ``identify_setups``; or if a file cannot be read.
     """
-    records, told, warnings = [], [], []
+    records, told = [], []
     doubts: list[Finding] = []
+    own: list[Finding] = []
     for path in files:
         progress(f"read {path.name}")
         with located(file=path):
@@ -107,10 +108,10 @@ def preger_document(
         records.append(ready)
         doubts += against
         told += [{"record": ready.name, **finding.document} for finding in quality.findings]
-        warnings += [f"{ready.name}: {f}" for f in findings if f.severity != "info"]
+        own += [replace(f, subject=", ".join(filter(None, (ready.name, f.subject)))) for f in findings]
     progress("identify all setups together")
     found = doubted(identify_setups(records, settings), tuple(doubts))
-    found = replace(found, warnings=(*warnings, *found.warnings))
+    found = replace(found, findings=(*own, *found.findings))
     return {**identification_document(found, {"findings": told}, {}), "merge": "preger"}
 
 
@@ -177,11 +178,8 @@ def identify_setups(
         spectrum=Spectrum(np.empty(0), np.empty((n_channels, 0)), np.empty((n_channels, 0))),
         settings=resolved,
         duration_s=duration_s,
-        warnings=(*(text for one in setups.ready for text in one.warnings), *_loose(setups, modes)),
-        notes=(
-            f"setups were joined before the identification by {', '.join(setups.references)}; without "
-            "uncertainty, of the checks on modes only those on stable poles and a clear peak are made",
-        ),
+        findings=(*(f for one in setups.ready for f in one.findings), *_loose(setups, modes)),
+        notes=(Finding("setups_joined", params={"references": ", ".join(setups.references)}),),
     ).unchecked("PreGER")
 
 
@@ -335,13 +333,13 @@ def _references(
     return tuple(settings.reference_channels or common)
 
 
-def _loose(setups: _Setups, modes: Sequence[ModalEstimate]) -> tuple[str, ...]:
-    """Warn of the modes in which the references hardly move."""
+def _loose(setups: _Setups, modes: Sequence[ModalEstimate]) -> tuple[Finding, ...]:
+    """Return findings on the modes in which the references hardly move."""
     at = np.array(
         [[c.name for c in setups.channels].index(name) for name in setups.references], dtype=np.int64
     )
     return tuple(
-        f"{mode.frequency_hz:.4g} Hz: the references hardly move; parts of the shape may not be consistent"
+        Finding("references_still", params={"frequency_hz": mode.frequency_hz})
         for mode in modes
         if tie(mode.mode_shape, at) < WEAK_CONNECTION
     )

@@ -172,5 +172,19 @@ def _intervals_of_90(document: dict[str, Any]) -> dict[str, Any]:
     return {**document, "identification": found}
 
 
-OBSERVATION = StoredSchema("observation", Observation, (_findings_have_codes, _intervals_of_90))
+def _identification_has_findings(document: dict[str, Any]) -> dict[str, Any]:
+    """Return version 4, whose identification has findings; sentences of version 3 are kept as they are."""
+    found = dict(document["identification"])
+    codes = {"warnings": "identification", "notes": "identification_note"}
+    said = {
+        code: [{"code": code, "params": {"text": t}} for t in found.pop(key, ())]
+        for key, code in codes.items()
+    }
+    found |= {"findings": said["identification"], "notes": said["identification_note"]}
+    return {**document, "identification": found}
+
+
+OBSERVATION = StoredSchema(
+    "observation", Observation, (_findings_have_codes, _intervals_of_90, _identification_has_findings)
+)
 """Format of stored observations."""

@@ -80,8 +80,6 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
     if model.identification.refine and known.held and feet is not None:
         sea = sea_share(found.modes, model.structure, model.sees(seen), feet)
         found = unlike_model(found, known.held, sea)
-    said = {str(f) for f in (*seen.findings, *found.findings)}
-    others = (Finding("identification", params={"text": t}) for t in found.warnings if t not in said)
     return Observation(
         record_id=record_id(record),
         model_hash=model.model_hash,
@@ -97,9 +95,7 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
         sensors=model.placed(seen.record),
         findings=(
             *seen.quality.findings,
-            *seen.findings,
             *found.findings,
-            *others,
             *known.findings,
             *uncalibrated(model.calibrations, record.start_utc),
             *_unsaid(model, seen.record),

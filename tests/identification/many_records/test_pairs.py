@@ -46,7 +46,7 @@ def test_the_plane_holds_the_pure_shapes(found: Identification) -> None:
     assert turned.modes[2] is found.modes[2]
     assert turned.modes[1].mode_shape_unaligned is found.modes[1].mode_shape
     assert turned.modes[1].mpc == pytest.approx(1.0)
-    assert "fore-aft share before: 1% and 62%" in turned.notes[0]
+    assert "fore-aft share before: 1% and 62%" in turned.notes[0].text
 
 
 def test_frequency_and_damping_go_with_the_nearer_shape(found: Identification) -> None:

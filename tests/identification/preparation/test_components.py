@@ -40,7 +40,7 @@ def test_shapes_hold_every_channel(record):
         assert mac(mode.mode_shape, shape) > 0.995
         assert mode.mode_shape_std.shape == (N,)
     assert found.stabilisation.mode_shape.shape[1] == found.spectrum.density.shape[0] == N
-    assert f"{COMPONENTS} components of {N} channels" in found.warnings[0]
+    assert f"{COMPONENTS} components of {N} channels" in found.findings[0].text
 
 
 def test_what_components_leave_out_is_noise(record):

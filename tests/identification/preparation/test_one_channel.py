@@ -50,8 +50,6 @@ def test_a_channel_alone_says_that_it_may_merge_a_pair() -> None:
     )
     record = simulate(system, np.random.default_rng(1), duration_s=600.0, sample_rate_hz=5.0)
     found = identify(record, IdentificationSettings(blocks=0, refine=False))
-    assert str(Finding("one_channel")) in found.notes
+    assert Finding("one_channel") in found.notes
     two = replace(record, data=np.vstack([record.data, np.roll(record.data, 9)]), channels=CHANNELS)
-    assert (
-        str(Finding("one_channel")) not in identify(two, IdentificationSettings(blocks=0, refine=False)).notes
-    )
+    assert Finding("one_channel") not in identify(two, IdentificationSettings(blocks=0, refine=False)).notes

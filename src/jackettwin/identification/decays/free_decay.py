@@ -130,13 +130,13 @@ def transient(record: Record, settings: IdentificationSettings, *, impacts: bool
     InputError
         If no channel is usable.
     """
-    usable, warnings = usable_channels(record)
+    usable, findings = usable_channels(record)
     missing = dict(zip(usable.channel_names, np.isnan(usable.data).mean(axis=1), strict=True))
     gaps = {name: share for name, share in missing.items() if share > MAX_MISSING_SHARE}
     if len(gaps) == len(missing):
         return None
     usable = usable.select([name for name in missing if name not in gaps])
-    warnings += tuple(f"channel {name} left out: {share:.0%} missing" for name, share in gaps.items())
+    findings += tuple(Finding("empty", name, {"share": float(share)}) for name, share in gaps.items())
     measured = detrend(usable)
     level, times = accelerated(measured, as_declared=True)
     part, level = _falling(level)
@@ -185,8 +185,7 @@ def transient(record: Record, settings: IdentificationSettings, *, impacts: bool
             low or 0.5 * float(f.min()), min(high, 0.4 * rate), rate, 0, (), (part.last - part.first) / rate
         ),
         duration_s=record.duration_s,
-        warnings=(*warnings, str(finding)),
-        findings=(finding,),
+        findings=(*findings, finding),
     )
     return Transient(part.fall, identified)
 

@@ -74,7 +74,7 @@ def bayoma(record: Record, settings: IdentificationSettings | None = None) -> Id
         spectrum=as_measured(welch(ready.y * ready.scale[:, None], rate), ready.differentiated),
         settings=resolved,
         duration_s=record.duration_s,
-        warnings=ready.warnings,
+        findings=ready.findings,
     ).unchecked("bayoma")
 
 

@@ -65,7 +65,7 @@ def fdd(record: Record, settings: IdentificationSettings | None = None) -> Ident
         spectrum=as_measured(welch(y * scale[:, None], rate), ready.differentiated),
         settings=resolved,
         duration_s=record.duration_s,
-        warnings=ready.warnings,
+        findings=ready.findings,
     ).unchecked("efdd")
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.findings import Finding
 from jackettwin.identification.mode_shapes import aligned, mac, mpc, mpd_rad, normalised
 
 if TYPE_CHECKING:
@@ -110,9 +111,7 @@ def _with_shape(mode: ModalEstimate, shape: ComplexArray) -> ModalEstimate:
     )
 
 
-def _note(a: ModalEstimate, b: ModalEstimate, first: FloatArray) -> str:
-    shares = " and ".join(f"{_share(m.mode_shape, first):.0%}" for m in (a, b))
-    return (
-        f"shapes of the pair at {a.frequency_hz:.4g} and {b.frequency_hz:.4g} Hz rotated within their plane "
-        f"to fore-aft and side-side, as one record does not separate them (fore-aft share before: {shares})"
-    )
+def _note(a: ModalEstimate, b: ModalEstimate, first: FloatArray) -> Finding:
+    low, high = (float(_share(m.mode_shape, first)) for m in (a, b))
+    params = {"low_hz": a.frequency_hz, "high_hz": b.frequency_hz, "low_share": low, "high_share": high}
+    return Finding("pair_rotated", params=params)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.findings import Finding
 from jackettwin.identification.mode_shapes import mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
@@ -50,7 +51,7 @@ def components(
     powers, vectors = np.linalg.eigh(there @ there.T)
     U = vectors[:, -COMPONENTS:]
     share = float(powers[-COMPONENTS:].sum() / powers.sum())
-    sentence = f"identified from {COMPONENTS} components of {len(U)} channels, {share:.1%} of their power"
+    params = {"components": COMPONENTS, "channels": len(U), "share": share}
     fewer = replace(
         ready,
         channels=tuple(Channel(f"component {i}", kinds.copy().pop()) for i in range(COMPONENTS)),
@@ -58,7 +59,7 @@ def components(
         scale=np.ones(COMPONENTS),
         references=list(range(COMPONENTS)),
         differentiated=np.repeat(ready.differentiated[:1], COMPONENTS),
-        warnings=(*ready.warnings, sentence),
+        findings=(*ready.findings, Finding("components", params=params)),
     )
     return fewer, ready.scale[:, None] * U
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray, Int64Array
 from jackettwin.errors import InputError
+from jackettwin.findings import Finding
 from jackettwin.identification.preparation.gaps import fill
 from jackettwin.identification.preparation.resolve import (
     BAND_RATIO,
@@ -46,7 +47,7 @@ PEAK_CHANNELS = 6
 MIN_TOP_DEGREE = 10
 """Smallest upper limit of the polynomial degree of pLSCF."""
 MIN_REPORTED_SHARE = 0.005
-"""Share of filled samples above which a warning is given."""
+"""Share of filled samples above which a finding is given."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,8 @@ class PreparedRecord:
         Steady tones that were subtracted.
     drifting : tuple of PhaseTrack
         Drifting tones that were subtracted.
-    warnings : tuple of str
+    findings : tuple of Finding
+        On channels left out, samples predicted, and a short record.
     differentiated : (n_channels,) int
         Number of times each channel was differentiated with respect to time.
     rotor_orders : tuple of (order, low, high)
@@ -85,7 +87,7 @@ class PreparedRecord:
     duration_s: float
     tones_hz: tuple[float, ...]
     drifting: tuple[PhaseTrack, ...]
-    warnings: tuple[str, ...]
+    findings: tuple[Finding, ...]
     differentiated: Int64Array
     rotor_orders: tuple[tuple[int, float, float], ...] = ()
     recorded_hz: float = 0.0
@@ -102,7 +104,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> PreparedRecord:
         If no usable channel is left, the band lies outside the record's, or the record is shorter than
         its lag window needs.
     """
-    usable, warnings = usable_channels(record)
+    usable, findings = usable_channels(record)
     level, differentiated = accelerated(detrend(usable))
     top = band_top_hz(level, settings) or np.inf
     level = _of_fast_length(_decimated(level, top, settings))
@@ -118,12 +120,12 @@ def prepare(record: Record, settings: IdentificationSettings) -> PreparedRecord:
     resolved, reduced = resolve(level, settings)
     reduced = _of_fast_length(reduced)
     del level, without  # of a day each copy takes fifty megabytes
-    warnings += shortness(reduced, resolved, chosen=settings.lowest_frequency_hz is None)
+    findings += shortness(reduced, resolved, chosen=settings.lowest_frequency_hz is None)
     y = fill(reduced.data)
     filled = np.mean(np.isnan(reduced.data) & np.isfinite(y), axis=1)
     for channel, share in zip(usable.channels, filled, strict=True):
         if share > MIN_REPORTED_SHARE:
-            warnings += (f"channel {channel.name}: {share:.1%} missing, predicted from the other channels",)
+            findings += (Finding("predicted", channel.name, {"share": float(share)}),)
     del reduced
     scale = np.array([np.sqrt(np.nanmean(row**2)) for row in y])
     references = _references(record, usable, settings)
@@ -138,7 +140,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> PreparedRecord:
         record.duration_s,
         tones,
         drifting,
-        warnings,
+        findings,
         differentiated,
         () if rotor is None else rotor.orders,
         record.sample_rate_hz,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.errors import InputError
+from jackettwin.findings import Finding
 from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.identification.preparation.spectra import FEWEST_CYCLES, densities, lowest_motion_hz, welch
 from jackettwin.quantities import VIBRATIONS
@@ -62,41 +63,37 @@ DEAD_SHARE = 1e-9
 """A channel is dead if it varies by less than this share of its largest value."""
 
 
-def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
-    """Return the live vibration channels, and a sentence on each that is left out.
+def usable_channels(record: Record) -> tuple[Record, tuple[Finding, ...]]:
+    """Return the live vibration channels, and a finding on each that is left out.
 
     Frozen readings become missing samples.
     """
     vibration = [c.name for c in record.channels if c.quantity in VIBRATIONS]
     alive: list[str] = []
-    warnings: list[str] = []
     record, frozen = without_stuck(record)
-    for name, share in frozen.items():
-        warnings.append(f"channel {name}: reading frozen for {share:.1%} of the time; taken as missing")
+    findings = [Finding("stuck", name, {"share": share}) for name, share in frozen.items()]
     for channel, y in zip(record.channels, record.data, strict=True):
         if channel.name not in vibration:
             continue
         finite = y[np.isfinite(y)]
         if len(finite) < 0.5 * len(y):
-            warnings.append(
-                f"channel {channel.name} left out: {1.0 - len(finite) / max(len(y), 1):.0%} missing"
-            )
+            findings.append(Finding("empty", channel.name, {"share": 1.0 - len(finite) / max(len(y), 1)}))
         elif np.ptp(finite) <= max(DEAD_SHARE * np.abs(finite).max(), SMALLEST):
-            warnings.append(f"channel {channel.name} left out: constant")
+            findings.append(Finding("dead", channel.name))
         else:
             alive.append(channel.name)
     twins = duplicate_channels(record.select(alive).data) if alive else {}
-    warnings += [f"channel {alive[i]} left out: a copy of {alive[j]}" for i, j in twins.items()]
+    findings += [Finding("copied", alive[i], {"other": alive[j]}) for i, j in twins.items()]
     alive = [name for i, name in enumerate(alive) if i not in twins]
     if not alive:
         raise InputError(
-            "no usable vibration channel" + "".join(f"; {text}" for text in warnings),
+            "no usable vibration channel" + "".join(f"; {finding}" for finding in findings),
             field="channels",
             value=list(record.channel_names),
             allowed=f"at least one live channel of {', '.join(sorted(VIBRATIONS))}",
             remedy="check the record's quantities and its data",
         )
-    return record.select(alive), tuple(warnings)
+    return record.select(alive), tuple(findings)
 
 
 def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedSettings, Record]:
@@ -159,8 +156,8 @@ def _orders(step: int, top: int, dense: int = DENSE_ORDERS) -> tuple[int, ...]:
     return (*low, *range(low[-1] + 2 * step, top + 1, 2 * step)) if len(low) else ()
 
 
-def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> tuple[str, ...]:
-    """Return sentences on what the record is too short for.
+def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> tuple[Finding, ...]:
+    """Return findings on what the record is too short for.
 
     Parameters
     ----------
@@ -172,18 +169,13 @@ def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> t
     low, duration = resolved.lowest_frequency_hz, reduced.duration_s
     at_peak = chosen and low * duration > 1.001 * FEWEST_CYCLES  # else the record is too short for that edge
     first = low / EDGE_BELOW_PEAK if at_peak else low
-    out: tuple[str, ...] = ()
+    out: tuple[Finding, ...] = ()
     if first * duration < SHORT_RECORD_CYCLES:
-        out += (
-            f"the record is short: {duration:.3g} s contain {first * duration:.0f} cycles of {first:.3g} Hz; "
-            f"distrust modes of such low frequency, which need hundreds of cycles",
-        )
+        params = {"duration_s": duration, "cycles": first * duration, "frequency_hz": first}
+        out += (Finding("short_for_lowest", params=params),)
     strongest = _strongest_below(welch(reduced.data, reduced.sample_rate_hz), low) if chosen else None
     if strongest is not None and strongest * duration < SHORT_RECORD_CYCLES:
-        out += (
-            f"the band starts at {low:.3g} Hz, but the record moves strongly near {strongest:.2g} Hz; it "
-            f"has too few cycles there to show a peak; use a longer record, or state lowest_frequency_hz",
-        )
+        out += (Finding("strong_below_band", params={"low_hz": low, "strongest_hz": strongest}),)
     return out
 
 

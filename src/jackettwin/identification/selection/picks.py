@@ -9,6 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import Int64Array
 from jackettwin.errors import InputError
+from jackettwin.findings import Finding
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,17 +63,15 @@ def with_verdicts(picks: Sequence[Pick], judged: Sequence[Candidate]) -> list[Ca
     ]
 
 
-def left_out(judged: Sequence[Candidate], picked: Sequence[Cluster]) -> tuple[str, ...]:
-    """Warn of modes that would be chosen automatically but are not picked, as the fitted model lacks them."""
+def left_out(judged: Sequence[Candidate], picked: Sequence[Cluster]) -> tuple[Finding, ...]:
+    """Return the finding on modes that would be chosen but are not picked: the fitted model lacks them."""
     taken = {int(k) for cluster in picked for k in cluster.poles}
     free = [c for c in judged if c.objection is None and c.doubt is None]
     f = [c.mode.frequency_hz for c in free if not taken & {int(k) for k in c.cluster.poles}]
     if not f:
         return ()
-    return (
-        f"the picks leave out modes at {', '.join(f'{x:.4g}' for x in sorted(f))} Hz: what is fitted to the "
-        f"spectrum lacks them; pick them too, or narrow the band",
-    )
+    listed = ", ".join(f"{x:.4g}" for x in sorted(f))
+    return (Finding("picks_leave_out", params={"frequencies_hz": listed}),)
 
 
 def _pole(poles: Stabilisation, found: Sequence[Cluster], pick: Pick) -> int:
