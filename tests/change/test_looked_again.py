@@ -13,8 +13,8 @@ from observations import BEGUN, seen
 from tests.change.test_judge import CHANGED, MODEL, SIXTY, days_of
 
 from jackettwin.change import corrections
+from jackettwin.change.alarms import likeliest_of
 from jackettwin.change.judge import JUDGED, StoredMonitoring, judge
-from jackettwin.change.table_monitoring import likeliest_of
 from jackettwin.change.watch_document import corrected_sentence, one_of, verdict_words, with_later_look
 from jackettwin.watching import CauseVerdict, Diagnosis
 

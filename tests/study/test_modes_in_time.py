@@ -69,5 +69,7 @@ def test_a_state_is_watched_by_the_command_as_well(tmp_path: Path) -> None:
     table = read_modal_table(path)
     assert table.history.frequency.shape == (90, 2)
     assert table.history.days[0] == pytest.approx(0.5)  # the middle of 3, 9, 15 and 21 h
-    (alarm,) = watch_table(table, baseline_days=60.0).alarms
-    assert BEGUN <= alarm.day < BEGUN + 9
+    watched = watch_table(table, baseline_days=60.0)
+    (told,) = watched.documents
+    first, last = (table.time(BEGUN + days).isoformat() for days in (0, 9))
+    assert first <= told["time_utc"] < last

@@ -1,3 +1,4 @@
+from .alarms import Alarm as Alarm
 from .changed_structures import Happening as Happening, Standing as Standing, with_mass as with_mass
 from .ground import Ground as Ground
 from .judge import (
@@ -16,14 +17,15 @@ from .smallest_changes import (
     smallest_documents as smallest_documents,
     smallest_sentence as smallest_sentence,
 )
-from .table_monitoring import Alarm as Alarm, MonitoredTable as MonitoredTable
+from .table_monitoring import (
+    MonitoredTable as MonitoredTable,
+    statement as statement,
+    watched_document as watched_document,
+)
 from .watch_document import (
-    alarm_document as alarm_document,
     alike_sentence as alike_sentence,
     corrected_sentence as corrected_sentence,
     next_sentence as next_sentence,
-    statement as statement,
     verdict_words as verdict_words,
-    watched_document as watched_document,
 )
 from .working_rotor import WorkingRotor as WorkingRotor

@@ -18,21 +18,22 @@ from typing import Any
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.change.alarms import explained_alarm
 from jackettwin.change.causes import ModelCauses, seen_causes
+from jackettwin.change.following import Alarms, followed
 from jackettwin.change.ground import UNDESCRIBED, Ground
-from jackettwin.change.reversals import past_of
+from jackettwin.change.reversals import EarlierAlarm
 from jackettwin.change.smallest_changes import (
     smallest_changes,
     smallest_documents,
     smallest_sentence,
 )
-from jackettwin.change.table_monitoring import explained_alarm, structure_causes, watch_after_baseline
+from jackettwin.change.table_monitoring import structure_causes, watch_after_baseline
 from jackettwin.change.watch_document import (
     alarm_document,
     likeliest,
     sizes_by_mode,
     verdict_words,
-    with_later_look,
 )
 from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
@@ -42,7 +43,7 @@ from jackettwin.twin import UNDATED, UNIT, Day, TwinModel, TwinState
 from jackettwin.twin.config import WatchSettings
 from jackettwin.twin.exact_sums import ModeSums
 from jackettwin.twin.state import Operation
-from jackettwin.watching import Change, History, PendingChange, Watch, look_again, step
+from jackettwin.watching import Change, History, PendingChange, Watch
 from jackettwin.watching.watch import FEWEST_DAYS
 
 EPOCH = date(1970, 1, 1)
@@ -235,42 +236,19 @@ def _day(
     """Return the results after one more day."""
     if known.watch is None or not day.days.size:
         return replace(known, through=name)
-    watch, look = step(known.watch, day)
-    alarms, pending, looked = known.alarms, known.pending, known.looked
 
-    def told(change: Change, before: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-        of, past = causes(), [past_of(alarm) for alarm in before]
+    def told(watch: Watch, change: Change, past: Sequence[EarlierAlarm]) -> Mapping[str, Any]:
+        of = causes()
         seen = None if of is None else seen_causes(of, watch.quantities, watch.labels)
         return alarm_document(watch, _time, explained_alarm(change, watch, baseline(), seen, past))
 
-    if pending is not None:
-        pending, change = look_again(pending, day)
-        if change is not None:
-            looked = (*looked, told(change, alarms[:-1]))
-            alarms = (*alarms[:-1], with_later_look(alarms[-1], looked[-1]))
-    if look.change is not None:
-        if alarms:
-            alarms = (*alarms[:-1], _before(alarms[-1], looked, look.change))
-        looked, pending = (told(look.change, alarms),), look.pending
-        alarms = (*alarms, *looked)
+    before = Alarms(known.alarms, known.pending, known.looked)
+    watch, alarms, look = followed(known.watch, before, day, told, _time)
     shown = JudgedDay(name, round(look.log_r, 4), np.round(look.rest, 7), np.round(look.rest_std, 7))
     return replace(
-        known, watch=watch, through=name, alarms=alarms, pending=pending, looked=looked,
-        looks=(*known.looks, shown),
+        known, watch=watch, through=name, alarms=alarms.documents, pending=alarms.pending,
+        looked=alarms.looked, looks=(*known.looks, shown),
     )  # fmt: skip
-
-
-def _before(
-    alarm: Mapping[str, Any], looked: Sequence[Mapping[str, Any]], later: Change
-) -> Mapping[str, Any]:
-    """Return the document of an alarm as it last looked before another change began."""
-    began = _time(later.began).isoformat()
-    sound = [one for one in looked if one["looked_utc"] <= began] or looked[:1]
-    if later.kind == "scatter" or not sound or sound[-1] is looked[-1]:
-        return alarm
-    (verdict,) = sound[-1]["verdicts"]
-    verdict = {**verdict, "time_utc": _time(later.day).isoformat()}
-    return with_later_look(alarm, {**sound[-1], "verdicts": [verdict]})
 
 
 def monitoring_document(judged: StoredMonitoring) -> dict[str, Any]:

@@ -3,37 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from jackettwin.arrays import BoolArray, FloatArray
-from jackettwin.change.causes import ModelCauses, SeenCauses, model_causes, seen_causes
+from jackettwin.change.alarms import Alarm, explained_alarm
+from jackettwin.change.causes import ModelCauses, model_causes, seen_causes
+from jackettwin.change.following import Alarms, followed
 from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.change.modal_table import ModalTable
-from jackettwin.change.next_measurements import Circumstances, Measurement, next_measurements
-from jackettwin.change.reversals import EarlierAlarm, Recurrence, answer_of, known_causes, known_changes
-from jackettwin.change.smallest_changes import SmallestChange, smallest_changes
+from jackettwin.change.reversals import EarlierAlarm
+from jackettwin.change.smallest_changes import SmallestChange, smallest_changes, smallest_documents
+from jackettwin.change.watch_document import alarm_document, alarm_sentence, chains, quantity_name
 from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
 from jackettwin.structure import Structure
 from jackettwin.watching import (
-    CLEAR,
-    Cause,
-    CauseVerdict,
     Change,
-    Diagnosis,
     History,
     Look,
-    PendingChange,
     Watch,
-    diagnose,
     fresh,
-    general_causes,
-    look_again,
     regressors,
     start,
-    step,
     typical,
     unexplained_std,
 )
@@ -42,39 +35,8 @@ from jackettwin.watching.history import deviations
 from jackettwin.watching.variance_shares import shares, slopes
 from jackettwin.watching.watch import columns_to_watch
 
-_PATTERNS, _UNLIKELY = 3, 0.001
-"""Number of causes whose patterns are kept, and their smallest probability."""
-_WITH = 0.05
-"""Smallest probability of a cause that is named with one from which the data do not distinguish it."""
 _MISSING = 0.1
 """Share of missing values of a condition above which a remark is given."""
-
-
-@dataclass(frozen=True)
-class Alarm:
-    """A change and its causes.
-
-    Attributes
-    ----------
-    patterns : {cause: (m,)} what each likely cause would have done to all quantities, at the size it would
-        have; NaN where that is not known
-    earlier : the same change as it looked before, first on the day of the alarm
-    told : day on which it was stated again as it looked before another change; None on the day of the look
-    answer : what it is to an earlier one, if it takes that back or is the same once more
-    """
-
-    change: Change
-    diagnosis: Diagnosis
-    next_measurements: tuple[Measurement, ...] = ()
-    patterns: Mapping[str, FloatArray] = field(default_factory=dict)
-    earlier: tuple[Alarm, ...] = ()
-    told: float | None = None
-    answer: Recurrence | None = None
-
-    @property
-    def day(self) -> float:
-        """Day of the alarm, whenever it was looked at last."""
-        return self.earlier[0].change.day if self.earlier else self.change.day
 
 
 @dataclass(frozen=True)
@@ -86,6 +48,7 @@ class MonitoredTable:
     baseline_days : (first, last) day of the baseline
     watch : the state after the last day
     looks : of each day with records after the baseline
+    alarms, documents : each as it looks at last, and as plain data
     explained : {(kind, mode): {condition: share of variance over the baseline}}
     slopes : {(kind, mode): {condition: of the logarithm, by a unit of it}}
     unexplained_std : {(kind, mode): of the logarithm}
@@ -98,6 +61,7 @@ class MonitoredTable:
     watch: Watch
     looks: tuple[Look, ...]
     alarms: tuple[Alarm, ...]
+    documents: tuple[Mapping[str, Any], ...]
     explained: Mapping[tuple[str, int], Mapping[str, float]]
     unexplained_std: Mapping[tuple[str, int], float]
     limits: tuple[str, ...]
@@ -162,22 +126,18 @@ def watch_table(
     seen = None if causes is None else seen_causes(causes, watch.quantities, watch.labels)
     limits += [] if causes is None else _unseen(causes, watch.labels)
     looks: list[Look] = []
-    alarms: list[Alarm] = []
-    pending: PendingChange | None = None
+    alarms, seen_then = Alarms(), dict[tuple[int, str], Alarm]()
+
+    def tell(watch: Watch, change: Change, past: Sequence[EarlierAlarm]) -> Mapping[str, Any]:
+        alarm = explained_alarm(change, watch, baseline, seen, past)
+        document = alarm_document(watch, table.time, alarm)
+        seen_then[len(past), document["looked_utc"]] = alarm
+        return document
+
     for day in rest.by_day():
         progress(f"{table.time(float(day.days[0])):%Y-%m}")
-        watch, look = step(watch, day)  # first, as for a living asset: both tell the same gains
+        watch, alarms, look = followed(watch, alarms, day, tell, table.time)
         looks.append(look)
-        if pending is not None:
-            pending, change = look_again(pending, day)
-            if change is not None:
-                past = _past(table, alarms[:-1])
-                alarms[-1] = _looked_again(alarms[-1], explained_alarm(change, watch, baseline, seen, past))
-        if look.change is not None:
-            alarms[-1:] = [_before(one, look.change) for one in alarms[-1:]]
-            past = _past(table, alarms)
-            alarms.append(explained_alarm(look.change, watch, baseline, seen, past))
-            pending = look.pending
     found = [one for block in watch.blocks for one in slopes(block, watch.design)]
     per_unit: dict[tuple[str, int], dict[str, float]] = dict(zip(watch.quantities, found, strict=True))
     return MonitoredTable(
@@ -185,7 +145,8 @@ def watch_table(
         (first, end),
         watch,
         tuple(looks),
-        tuple(alarms),
+        tuple(seen_then[number, one["looked_utc"]] for number, one in enumerate(alarms.documents)),
+        alarms.documents,
         explained,
         unexplained,
         tuple(limits),
@@ -194,89 +155,53 @@ def watch_table(
     )
 
 
-def explained_alarm(
-    change: Change,
-    watch: Watch,
-    baseline: History,
-    seen: SeenCauses | None,
-    past: Sequence[EarlierAlarm] = (),
-) -> Alarm:
-    """Return a change with its causes: the structure's or patterns over modes, and earlier changes."""
-    kinds = [kind for kind, _ in watch.quantities]
-    known = known_changes(past) if change.kind != "scatter" else {}
-    chosen = np.ones(len(kinds), dtype=np.bool_) if seen is None else seen.known
-    if seen is None:
-        causes = general_causes(watch.quantities, watch.labels, typical(baseline.frequency))
-    else:
-        causes = seen.causes
-    causes = (*causes, *known_causes(known, chosen))
-    own = [kind for kind, good in zip(kinds, chosen, strict=True) if good]
-    found = diagnose(change.restricted(chosen), causes, own)
-    # what a change is to an earlier one is no alternative to the causes of either
-    groups = (tuple(name for name in group if name not in known) for group in found.inseparable)
-    found = replace(found, inseparable=tuple(group for group in groups if len(group) > 1))
-    answer = answer_of(likeliest_of(found), known)
-    further: tuple[Measurement, ...] = ()
-    if seen is not None and answer is None:
-        further = next_measurements(seen, found, Circumstances.of(watch, baseline, seen.model.labels))
-    patterns = _patterns(found, causes, chosen)
-    sizeless = (
-        replace(v, size=np.nan, interval_90=(np.nan, np.nan)) if v.cause in known else v
-        for v in found.verdicts
-    )
-    return Alarm(change, replace(found, verdicts=tuple(sizeless)), further, patterns, answer=answer)
+def watched_document(watched: MonitoredTable) -> dict[str, Any]:
+    """Return a judged table as plain data; sizes are relative changes, times UTC."""
+    table = watched.table
+    first, end = watched.baseline_days
+    return {
+        "name": table.name,
+        "statement": statement(watched),
+        "alarms": list(watched.documents),
+        "reversals": [
+            {key: alarm[key] for key in ("time_utc", "takes_back_utc")}
+            for alarm in watched.documents
+            if alarm["takes_back_utc"]
+        ],
+        "quantities": {
+            quantity_name(watched.watch, key): {
+                "explained_by": dict(watched.explained[key]),
+                "per_unit": dict(watched.slopes[key]),
+                "unexplained_std": watched.unexplained_std[key],
+            }
+            for key in watched.watch.quantities
+        },
+        "windows": int(table.history.days.size),
+        "days_watched": len(watched.looks),
+        "arl_years": watched.watch.arl_years,
+        "baseline_utc": [table.time(first).isoformat(), table.time(end).isoformat()],
+        "threshold_ln": watched.watch.log_threshold,
+        "evidence": [
+            {"time_utc": table.time(look.day).isoformat(), "ln_evidence": look.log_r}
+            for look in watched.looks
+        ],
+        "smallest_found": smallest_documents(watched.smallest),
+        "limits": list(watched.limits),
+    }
 
 
-def _past(table: ModalTable, alarms: Sequence[Alarm]) -> tuple[EarlierAlarm, ...]:
-    """Return earlier alarms as the next ones see them."""
-    return tuple(
-        EarlierAlarm(
-            table.time(one.day).isoformat(), one.change.size, one.change.size_std,
-            one.change.kind != "scatter", one.answer,
+def statement(watched: MonitoredTable) -> str:
+    """Return the outcome in a sentence."""
+    table = watched.table
+    if not watched.looks:
+        return "Nothing is watched yet: the table ends with its baseline."
+    if not watched.documents:
+        last = table.time(watched.looks[-1].day)
+        return (
+            f"No change found in {len(watched.looks)} days with records up to {last:%Y-%m-%d}; a false alarm "
+            f"is expected once in {watched.watch.arl_years:g} years or more rarely."
         )
-        for one in alarms
-    )  # fmt: skip
-
-
-def likeliest_of(diagnosis: Diagnosis) -> tuple[CauseVerdict, ...]:
-    """Return the likeliest cause, with those that the data do not distinguish from it unless it is clear.
-
-    Softer soil at 41 % is no verdict where scour of all feet has 29 % and of one 18 %.
-    """
-    best, *others = diagnosis.verdicts
-    if best.probability >= CLEAR:
-        return (best,)
-    group = next((group for group in diagnosis.inseparable if best.cause in group), ())
-    return (best, *(one for one in others if one.cause in group and one.probability >= _WITH))
-
-
-def _looked_again(before: Alarm, later: Alarm) -> Alarm:
-    """Return an alarm as it looks later, with how it looked before."""
-    return replace(later, earlier=(*before.earlier, replace(before, earlier=())))
-
-
-def _before(alarm: Alarm, later: Change) -> Alarm:
-    """Return an alarm as it last looked before another change began.
-
-    Looks after that take both for one step: of ice that fell off after a week a month leaves a quarter.
-    """
-    looks = [*alarm.earlier, alarm]
-    if later.kind == "scatter" or looks[-1].change.day <= later.began:
-        return alarm
-    sound = [one for one in looks if one.change.day <= later.began] or looks[:1]
-    return _looked_again(alarm, replace(sound[-1], earlier=(), told=later.day))
-
-
-def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -> dict[str, FloatArray]:
-    """Return the effects of likely causes on all quantities, NaN where unknown."""
-    by_name = {cause.name: cause for cause in causes}
-    found: dict[str, FloatArray] = {}
-    for verdict in diagnosis.verdicts[:_PATTERNS]:
-        if verdict.probability > _UNLIKELY and np.isfinite(verdict.size):
-            step = np.full(known.size, np.nan)
-            step[known] = by_name[verdict.cause].steps(np.array([verdict.size]))[0]
-            found[verdict.cause] = step
-    return found
+    return " ".join(alarm_sentence(chain) for chain in chains(watched.documents))
 
 
 def structure_causes(

@@ -1,64 +1,20 @@
-"""JSON output of ``jackettwin watch``."""
+"""Alarms as plain data, and in words."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from datetime import datetime
-from functools import reduce
 from typing import Any
 
 import numpy as np
 
-from jackettwin.change.smallest_changes import smallest_documents
-from jackettwin.change.table_monitoring import Alarm, MonitoredTable, likeliest_of
+from jackettwin.change.alarms import Alarm, likeliest_of
 from jackettwin.intervals import NORMAL_90
 from jackettwin.watching import CLEAR, CauseVerdict, Watch
 
 _NAMED, _LIKELY = 3, 0.001
 """Number of causes in a sentence if none is clear, and the smallest probability of a listed cause."""
-
-
-def watched_document(watched: MonitoredTable) -> dict[str, Any]:
-    """Return a judged table as plain data; sizes are relative changes, times UTC."""
-    table = watched.table
-    first, end = watched.baseline_days
-    alarms = [alarm_document(watched.watch, table.time, alarm) for alarm in watched.alarms]
-    return {
-        "name": table.name,
-        "statement": statement(watched),
-        "alarms": alarms,
-        "reversals": [
-            {key: alarm[key] for key in ("time_utc", "takes_back_utc")}
-            for alarm in alarms
-            if alarm["takes_back_utc"]
-        ],
-        "quantities": {
-            quantity_name(watched.watch, key): {
-                "explained_by": dict(watched.explained[key]),
-                "per_unit": dict(watched.slopes[key]),
-                "unexplained_std": watched.unexplained_std[key],
-            }
-            for key in watched.watch.quantities
-        },
-        "windows": int(table.history.days.size),
-        "days_watched": len(watched.looks),
-        "arl_years": watched.watch.arl_years,
-        "baseline_utc": [table.time(first).isoformat(), table.time(end).isoformat()],
-        "threshold_ln": watched.watch.log_threshold,
-        "evidence": [
-            {"time_utc": table.time(look.day).isoformat(), "ln_evidence": look.log_r}
-            for look in watched.looks
-        ],
-        "smallest_found": smallest_documents(watched.smallest),
-        "limits": list(watched.limits),
-    }
-
-
-def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm) -> dict[str, Any]:
-    """Return an alarm as plain data as it looks now; ``time`` gives the time of a day number."""
-    looks = [_looked_document(watch, time, one) for one in (*alarm.earlier, alarm)]
-    return reduce(with_later_look, looks)
 
 
 def with_later_look(before: Mapping[str, Any], later: Mapping[str, Any]) -> dict[str, Any]:
@@ -82,7 +38,8 @@ def with_later_look(before: Mapping[str, Any], later: Mapping[str, Any]) -> dict
     }
 
 
-def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm) -> dict[str, Any]:
+def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm) -> dict[str, Any]:
+    """Return an alarm as plain data as it looks on a day; ``time`` gives the time of a day number."""
     change, diagnosis = alarm.change, alarm.diagnosis
     named = likeliest_of(diagnosis)
     low, high = change.began_interval_90
@@ -108,7 +65,7 @@ def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Ala
         "at_alarm": None,
         "verdicts": [
             {
-                "time_utc": time(change.day if alarm.told is None else alarm.told).isoformat(),
+                "time_utc": time(change.day).isoformat(),
                 "cause": one_of([one.cause for one in named]),
                 "probability": sum(one.probability for one in named),
                 "named": [one.cause for one in named],
@@ -213,21 +170,6 @@ def likeliest(alarm: Mapping[str, Any]) -> str:
         return f"most likely {verdict_words(now)}"
     named = [f"{one['cause']} ({100.0 * one['probability']:.0f} %)" for one in alarm["causes"][:_NAMED]]
     return f"cause not clear: {', '.join(named)}"
-
-
-def statement(watched: MonitoredTable) -> str:
-    """Return the outcome in a sentence."""
-    table = watched.table
-    if not watched.looks:
-        return "Nothing is watched yet: the table ends with its baseline."
-    if not watched.alarms:
-        last = table.time(watched.looks[-1].day)
-        return (
-            f"No change found in {len(watched.looks)} days with records up to {last:%Y-%m-%d}; a false alarm "
-            f"is expected once in {watched.watch.arl_years:g} years or more rarely."
-        )
-    documents = [alarm_document(watched.watch, table.time, alarm) for alarm in watched.alarms]
-    return " ".join(alarm_sentence(chain) for chain in chains(documents))
 
 
 def chains(alarms: Sequence[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import datetime
 from textwrap import wrap
 
 import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from jackettwin.change import Alarm, MonitoredTable, alarm_document, verdict_words
+from jackettwin.change import Alarm, MonitoredTable, verdict_words
 from jackettwin.intervals import NORMAL_90
 from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
@@ -42,8 +43,8 @@ def unexplained_through_time(watched: MonitoredTable, chosen: Sequence[int]) -> 
     figure = make_subplots(rows=len(chosen), cols=1, shared_xaxes=True, vertical_spacing=0.03)
     for row, i in enumerate(chosen, start=1):
         _line(figure, watched, i, row)
-        for number, alarm in enumerate(watched.alarms):
-            _mark(figure, watched, alarm, i, row, named=row == 1 and number == 0)
+        for number in range(len(watched.alarms)):
+            _mark(figure, watched, number, i, row, named=row == 1 and number == 0)
         kind = watched.watch.quantities[i][0]
         figure.update_yaxes(
             title=style.title(_named(watched, i).replace(", ", ",<br>"), _SHOWN_IN[kind][1]), row=row, col=1
@@ -80,14 +81,14 @@ def _line(figure: go.Figure, watched: MonitoredTable, i: int, row: int) -> None:
     )  # fmt: skip
 
 
-def _mark(figure: go.Figure, watched: MonitoredTable, alarm: Alarm, i: int, row: int, *, named: bool) -> None:
-    change, table = alarm.change, watched.table
+def _mark(figure: go.Figure, watched: MonitoredTable, number: int, i: int, row: int, *, named: bool) -> None:
+    change, document, table = watched.alarms[number].change, watched.documents[number], watched.table
     low, high = (table.time(day) for day in change.began_interval_90)
-    at = table.time(alarm.day)
+    at = datetime.fromisoformat(document["time_utc"])
     figure.add_vrect(x0=low, x1=high, fillcolor=style.ORANGE, opacity=0.25, line_width=0, row=row, col=1)
     figure.add_vline(x=at, line={"color": style.VERMILLION, "width": 2}, row=row, col=1)
     if named:
-        now = alarm_document(watched.watch, table.time, alarm)["verdicts"][-1]
+        now = document["verdicts"][-1]
         said = verdict_words(now) if now["probability"] >= CLEAR else "cause not clear"
         figure.add_annotation(
             x=at, y=1.0, yref="y domain", xanchor="left", yanchor="top", xshift=6, showarrow=False,

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from jackettwin.change import (
-    Alarm,
     MonitoredTable,
-    alarm_document,
     alike_sentence,
     corrected_sentence,
     next_sentence,
@@ -57,10 +56,8 @@ def build_watch_page(watched: MonitoredTable, path: Path) -> Path:
         outcome.append(Plot("leading_through_time", caption, figure, fits=True))
     sections.append(PageSection("Has it changed?", tuple(outcome)))
     sections += [
-        PageSection(
-            f"Change {i}" if len(watched.alarms) > 1 else "The change", tuple(_alarm(watched, alarm, i))
-        )
-        for i, alarm in enumerate(watched.alarms, start=1)
+        PageSection(f"Change {i + 1}" if len(watched.alarms) > 1 else "The change", tuple(_alarm(watched, i)))
+        for i in range(len(watched.alarms))
     ]
     if watched.looks:
         figure = unexplained_through_time(watched, frequencies(watched))
@@ -95,8 +92,8 @@ def build_watch_page(watched: MonitoredTable, path: Path) -> Path:
     )
 
 
-def _alarm(watched: MonitoredTable, alarm: Alarm, number: int) -> list[Block]:
-    document = alarm_document(watched.watch, watched.table.time, alarm)
+def _alarm(watched: MonitoredTable, number: int) -> list[Block]:
+    document = watched.documents[number]
     shown = [cause for cause in document["causes"] if cause["probability"] >= _LISTED]
     rows = [(c["cause"], f"{100.0 * c['probability']:.0f}", *_size(c)) for c in shown]
     others = len(document["causes"]) - len(shown)
@@ -104,9 +101,10 @@ def _alarm(watched: MonitoredTable, alarm: Alarm, number: int) -> list[Block]:
         rest = 1.0 - sum(cause["probability"] for cause in shown)
         rows.append((count(others, "other cause"), f"{100.0 * rest:.0f}", "–", "–"))
     caption = "Probable causes, given the data of the change."
+    pattern = change_pattern(watched, watched.alarms[number])
     blocks: list[Block] = [
         Table(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
-        Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm), fits=True),
+        Plot(f"change_pattern_{number + 1}", _PATTERN, pattern, fits=True),
     ]
     if alike := alike_sentence(document):
         blocks.append(Text((f"{alike}.",)))
@@ -120,7 +118,7 @@ def _alarm(watched: MonitoredTable, alarm: Alarm, number: int) -> list[Block]:
     return blocks
 
 
-def _size(cause: dict[str, Any]) -> tuple[str, str]:
+def _size(cause: Mapping[str, Any]) -> tuple[str, str]:
     """Return size and interval as text; a cause that is either present or not has no size."""
     if cause["interval_90"] is None or cause["cause"].partition(" (or ")[0].endswith((" lost", " flooded")):
         return "–", "–"
