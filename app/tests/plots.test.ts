@@ -2,6 +2,7 @@ import { describe, expect, test } from "vitest";
 import { binPlot } from "../src/parts/modes";
 import { csvOf, extentOf, type PlotData, spanOf, ticksOf, timeTicksOf } from "../src/parts/plot/series";
 import { svgOf } from "../src/parts/plot/svg";
+import { stiffnessPlot } from "../src/parts/ground";
 
 const plot: PlotData = {
   title: 'side-side "1" <b>',
@@ -144,6 +145,32 @@ describe("many modes", () => {
       [1, null],
       [2, null],
       [3, null],
+    ]);
+  });
+});
+
+describe("the ground's stiffness", () => {
+  const of = (version: number, medians: Record<string, number>) => ({
+    asset: "wtg",
+    version,
+    days: [],
+    statement: "",
+    units: {},
+    stiffness_in_time: {
+      smoothed: Object.fromEntries(
+        Object.entries(medians).map(([k, median]) => [k, { median, interval_90: [0, 2] }]),
+      ),
+      changes: [],
+      forecast: [],
+    },
+  });
+  test("is drawn by the adopted version with its interval, and by each other one that has days", () => {
+    const two = { "2025-03-02": 0.9, "2025-03-01": 1 };
+    const { series } = stiffnessPlot(of(1, two), [of(3, { "2025-03-02": 0.8 }), of(2, {})]);
+    expect(series.map((s) => [s.name, Array.from(s.y)])).toEqual([
+      ["90 % by now", [1, 0.9]],
+      ["known by now, version 1", [1, 0.9]],
+      ["version 3", [0.8]],
     ]);
   });
 });

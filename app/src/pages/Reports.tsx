@@ -1,9 +1,9 @@
 // The report on all records, to read, print and send; tables to take away.
 import { useAsset } from "../api/answer";
-import { type Knowledge, recordsOf } from "../api/shapes";
 import { Card } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/place";
+import { recordsOf } from "../words/numbers";
 
 const EXPORT = "/api/v1/export.parquet?table=";
 const TABLES = ["modes", "findings", "records", "states", "conditions"];
@@ -22,9 +22,9 @@ export default function Reports({ asset }: PageProps) {
           ))}
         </div>
       </div>
-      <Shown of={twin} lines={10} some={(data) => (data.parameters as Knowledge).reported} none={<Nothing />}>
+      <Shown of={twin} lines={10} some={(data) => data.parameters.reported} none={<Nothing />}>
         {(data) => {
-          const known = data.parameters as Knowledge;
+          const known = data.parameters;
           const url = `/assets/${encodeURIComponent(asset)}/report?version=${data.version}`;
           return (
             <Card

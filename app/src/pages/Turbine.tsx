@@ -1,8 +1,7 @@
 // One screen: what the foundation does now, what changed and why, and how sure that is.
 import { Suspense } from "preact/compat";
 import { useAsset } from "../api/answer";
-import { type Alarm, type Asset, type Schemas } from "../api/client";
-import { type Knowledge, type KnownMode, type KnownParameter, recordsOf } from "../api/shapes";
+import type { Alarm, Asset, Schemas } from "../api/client";
 import { AlarmList } from "../parts/AlarmList";
 import { Assumptions } from "../parts/Assumptions";
 import { Ago, Card, Light } from "../parts/Bits";
@@ -14,19 +13,19 @@ import { later } from "../parts/later";
 import { SaveDrawn } from "../parts/plot/SaveMenu";
 import type { PageProps } from "../shell/place";
 import { assetUrl } from "../shell/place";
-import { between, count, frequency, percent, quantity, sentence, words, years } from "../words/numbers";
+import { between, count, frequency, percent, quantity, recordsOf, sentence, words, years } from "../words/numbers";
 
 const Stiffness = later(() => import("../parts/Stiffness"));
 type Twin = Schemas["TwinOut"];
-const RECORDS = [{ title: "Records", numeric: true, show: (m: KnownMode) => m.records }];
+type Knowledge = Schemas["Knowledge"];
+const RECORDS = [{ title: "Records", numeric: true, show: (m: Schemas["TwinMode"]) => m.records }];
 
 /** Numbers that a manager asks for: first bending modes, ground, alarms, life; each leads to its page. */
 function Figures({ own, twin, alarms }: { own: Asset; twin: Twin; alarms: readonly Alarm[] }) {
   if (!twin.records) return null;
-  const modes = twin.modes as unknown as KnownMode[];
-  const known = twin.parameters as Knowledge;
+  const { modes, parameters: known } = twin;
   const first = ["fore_aft_1", "side_side_1"].flatMap((label) => modes.filter((m) => m.label === label));
-  const ground = Object.values(known.parameters ?? {}).find((p) => p.unit === "N/m");
+  const ground = Object.values(known.parameters).find((p) => p.unit === "N/m");
   const open = alarms.filter((a) => !a.acknowledged_by && !a.closed_by && !a.muted_until_utc).length;
   const figures: [string, string, string, string][] = first.map((m) => [
     words(m.label),
@@ -35,7 +34,8 @@ function Figures({ own, twin, alarms }: { own: Asset; twin: Twin; alarms: readon
     `timeline?mode=${m.label}`,
   ]);
   if (ground) {
-    const interval = ground.interval_90 ? `${between(...ground.interval_90, ground.unit)} (90 %)` : "no interval";
+    const [low, high] = ground.interval_90 ?? [];
+    const interval = low && high ? `${between(low, high, ground.unit)} (90 %)` : "no interval";
     const value = quantity(ground.median, ground.unit);
     figures.push([`${ground.words}, ${of(ground)}`, value, interval, "timeline?show=ground"]);
   }
@@ -59,15 +59,15 @@ function Figures({ own, twin, alarms }: { own: Asset; twin: Twin; alarms: readon
 }
 
 /** The records of an estimate: where the twin file names states of operation, those in them. */
-const restsOn = (known: Knowledge): string => `Of the ${recordsOf(known)} that the estimate rests on`;
+const restsOn = (known?: Knowledge): string => `Of the ${recordsOf(known)} that the estimate rests on`;
 
 /** What an estimate is of: ground that changes is told as on its newest day. */
-const of = (p: KnownParameter): string => p.day ?? "all records";
+const of = (p: Schemas["KnownParameter"]): string => p.day ?? "all records";
 
-const Supports = ({ known }: { known: Knowledge }) => (
+const Supports = ({ known }: { known: Knowledge["parameters"] }) => (
   <Table
     label="Supports"
-    rows={Object.entries(known.parameters ?? {})}
+    rows={Object.entries(known)}
     id={([name]) => name}
     columns={[
       { title: "Parameter", show: ([, p]) => <span class="prose">{p.words}</span> },
@@ -102,7 +102,7 @@ function Answers({ asset, known }: { asset: string; known: Knowledge }) {
       note={`${restsOn(known)}; in brackets 90 % intervals. What changes with time is told above and below.`}
     >
       <dl class="answers">
-        {known.answers?.map(({ question, answer }) => (
+        {known.answers.map(({ question, answer }) => (
           <div key={question}>
             <dt>{question}</dt>
             <dd>
@@ -141,7 +141,8 @@ export function Turbine({ asset }: PageProps) {
   const alarms = useAsset(asset, "/alarms");
   const budget = useAsset(asset, "/damping-budget");
   if (own.data === undefined && own.problem) return <Trouble title={asset} problem={own.problem} again={own.again} />;
-  const known = twin.data?.parameters as Knowledge | undefined;
+  const known = twin.data?.parameters;
+  const parameters = known?.parameters ?? {};
   return (
     <>
       {own.data ? <Head asset={own.data} twin={twin.data} /> : <h1 class="head">{asset}</h1>}
@@ -158,16 +159,16 @@ export function Turbine({ asset }: PageProps) {
           note="Means of all records, whatever the rotor did."
         >
           <Shown of={twin} some={(data) => data.records} none={<NoRecord asset={asset} />} lines={7}>
-            {(data) => <ModeTable asset={asset} modes={data.modes as unknown as KnownMode[]} more={RECORDS} />}
+            {(data) => <ModeTable asset={asset} modes={data.modes} more={RECORDS} />}
           </Shown>
         </Card>
-        {known?.answers && <Answers asset={asset} known={known} />}
+        {known?.answers.length ? <Answers asset={asset} known={known} /> : null}
         <Suspense fallback={null}>
           <Stiffness asset={asset} />
         </Suspense>
         <Card
           title="Damping by source"
-          note={`Damping ratio in %. ${restsOn(known ?? {})}.`}
+          note={`Damping ratio in %. ${restsOn(known)}.`}
           more={
             budget.data?.items.length ? (
               <SaveDrawn title="Damping by source" csv={() => budgetCsv(budget.data?.items ?? [])} />
@@ -183,11 +184,11 @@ export function Turbine({ asset }: PageProps) {
           note={known?.law && `Law ${known.law}, ${known.status}. ${restsOn(known)}.`}
           more={<a href={assetUrl(asset, "reports")}>Report</a>}
         >
-          <Shown of={twin} some={() => known?.parameters} none={<NotYet />} lines={5}>
-            {() => <Supports known={known ?? {}} />}
+          <Shown of={twin} some={() => known?.law} none={<NotYet />} lines={5}>
+            {() => <Supports known={parameters} />}
           </Shown>
         </Card>
-        <Assumptions asset={asset} known={known ?? {}} />
+        <Assumptions asset={asset} known={parameters} />
       </div>
     </>
   );

@@ -3,20 +3,20 @@ import { useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { may } from "../api/do";
-import type { Knowledge } from "../api/shapes";
 import { assetUrl } from "../shell/place";
 import { count } from "../words/numbers";
 import { Card, Form, Press } from "./Bits";
 import { Empty, Shown } from "./Shown";
 
 type Assumption = Schemas["AssumptionOut"];
+type Parameters = Schemas["Knowledge"]["parameters"];
 
 /** By how much a standard deviation of it moves what it moves most. */
-function moved(one: Assumption, known: Knowledge): string {
+function moved(one: Assumption, known: Parameters): string {
   const [name, most] = Object.entries(one.moves ?? {}).toSorted(([, a], [, b]) => Math.abs(b) - Math.abs(a))[0] ?? [];
   return name === undefined || most === undefined
     ? ""
-    : `moves ${known.parameters?.[name]?.words ?? name} by ${(100 * Math.abs(most)).toPrecision(2)} %`;
+    : `moves ${known[name]?.words ?? name} by ${(100 * Math.abs(most)).toPrecision(2)} %`;
 }
 
 function Confirm({ asset, one, done }: { asset: string; one: Assumption; done: (version: number) => void }) {
@@ -40,7 +40,7 @@ function Confirm({ asset, one, done }: { asset: string; one: Assumption; done: (
 /** So many are shown at first. */
 const FIRST = 4;
 
-type ListProps = { asset: string; known: Knowledge; items: Assumption[]; done: (version: number) => void };
+type ListProps = { asset: string; known: Parameters; items: Assumption[]; done: (version: number) => void };
 
 const List = ({ asset, known, items, done }: ListProps) => (
   <ul class="list">
@@ -56,7 +56,7 @@ const List = ({ asset, known, items, done }: ListProps) => (
   </ul>
 );
 
-export function Assumptions({ asset, known }: { asset: string; known: Knowledge }) {
+export function Assumptions({ asset, known }: { asset: string; known: Parameters }) {
   const [version, setVersion] = useState<number | null>(null);
   const found = useAsset(asset, "/assumptions");
   return (

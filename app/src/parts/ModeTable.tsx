@@ -1,10 +1,11 @@
 // Modes in a table: the same columns wherever modes stand.
-import type { Estimated } from "../api/shapes";
+import type { Mode } from "../api/client";
 import { assetUrl } from "../shell/place";
 import { frequency, percent, words } from "../words/numbers";
 import { type Column, Table } from "./Table";
 
-type SomeMode = Estimated & { damping_ratio_interval_90?: number[] | null };
+type Own = "label" | "frequency_hz" | "frequency_std_hz" | "damping_ratio" | "damping_ratio_std";
+type SomeMode = Pick<Mode, Own> & { damping_ratio_interval_90?: number[] | null };
 
 interface ModeTableProps<T extends SomeMode> {
   asset: string;

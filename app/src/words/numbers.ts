@@ -88,6 +88,9 @@ export function between(low: number, high: number, unit: string): string {
 /** side_side_1: side-side 1. */
 export const words = (label: string): string => label.replace(/_(\d+)$/, " $1").replaceAll("_", "-");
 export const count = (n: number, noun: string): string => `${n} ${noun}${n === 1 ? "" : "s"}`;
+/** What an estimate is of: 730 records up to 2025-12-01. */
+export const recordsOf = (of?: { records: number; until_utc?: string | null }): string =>
+  count(of?.records ?? 0, "record") + (of?.until_utc ? ` up to ${of.until_utc.slice(0, 10)}` : "");
 
 const LONG_YEARS = 1000;
 /** Years without digits that nobody knows. */

@@ -10,6 +10,9 @@ export function local(time: string): string {
   return `${said} by this clock`;
 }
 
+/** 14:00, by the reader's own clock. */
+export const here = (seconds: number): string => new Date(seconds * 1000).toTimeString().slice(0, 5);
+
 const STEPS: readonly (readonly [number, string])[] = [
   [86_400, "day"],
   [3600, "hour"],

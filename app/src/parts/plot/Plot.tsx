@@ -5,6 +5,7 @@ import "uplot/dist/uPlot.min.css";
 import { asked, keep, keepStretch, stretch, useStrange } from "../../shell/place";
 import { colour, theme } from "../../shell/theme";
 import { onAxis, raised, short } from "../../words/numbers";
+import { here } from "../../words/time";
 import { useWidth } from "../width";
 import { SaveMenu, sheetOf } from "./SaveMenu";
 import type { PlotData, Range, Series } from "./series";
@@ -180,8 +181,9 @@ export function Plot({ data, height = 220, onPick, together, first = null }: Plo
               const [x, y, low, high] = [s.x[hit[1]] ?? 0, s.y[hit[1]], s.low?.[hit[1]], s.high?.[hit[1]]];
               const interval =
                 typeof low === "number" && typeof high === "number" ? ` (${digits(low)} to ${digits(high)})` : "";
+              const at = readX(data, x, shown[1] - shown[0]).replace("UTC", `UTC (${here(x)} here)`);
               setRead(
-                `${readX(data, x, shown[1] - shown[0])} · ${s.name} ${typeof y === "number" ? digits(y) : "–"}${interval}${s.said ? `, ${s.said[hit[1]]}` : ""}`,
+                `${at} · ${s.name} ${typeof y === "number" ? digits(y) : "–"}${interval}${s.said ? `, ${s.said[hit[1]]}` : ""}`,
               );
             },
           ],

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from math import log
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from fastapi import Path
@@ -17,7 +18,7 @@ from jackettwin.service.web.schemas.assets import ChangeOut, ComparisonOut
 from jackettwin.service.web.schemas.common import Page
 from jackettwin.service.web.schemas.drawings import ColourOut, StructureOut
 from jackettwin.service.web.schemas.findings import ActOut, FindingOut
-from jackettwin.service.web.schemas.modes import ModeOut, TwinOut
+from jackettwin.service.web.schemas.modes import KnownParameter, ModeOut, TwinOut
 from jackettwin.service.web.schemas.supports import SupportsOut
 from jackettwin.store import assets, handling, results
 from jackettwin.store.records import read_cursor, write_cursor
@@ -188,33 +189,30 @@ def compared(
     """Return the comparison of the adopted version with another one on the same records."""
     mine, theirs = twin(connection, service, adopted), twin(connection, service, other)
     changes = []
-    for name, std, unit in (
-        ("frequency_hz", "frequency_std_hz", "Hz"),
-        ("damping_ratio", "damping_ratio_std", "-"),
+    for name, unit, value in (
+        ("frequency_hz", "Hz", attrgetter("frequency_hz", "frequency_std_hz")),
+        ("damping_ratio", "-", attrgetter("damping_ratio", "damping_ratio_std")),
     ):
-        before = {m["label"]: (m[name], m[std]) for m in mine.modes}
-        after = {m["label"]: (m[name], m[std]) for m in theirs.modes}
+        before, after = ({m.label: value(m) for m in known.modes} for known in (mine, theirs))
         changes += [
             _change(f"{label} {name}", unit, before.get(label), after.get(label))
             for label in {**before, **after}
         ]
-    before, after = (_logarithms(known.parameters.get("parameters", {})) for known in (mine, theirs))
-    units = {
-        name: p["unit"] for k in (mine, theirs) for name, p in k.parameters.get("parameters", {}).items()
-    }
+    before, after = (_logarithms(known.parameters.parameters) for known in (mine, theirs))
+    units = {name: p.unit for known in (mine, theirs) for name, p in known.parameters.parameters.items()}
     changes += [_change(f"ln {name}", units[name], before.get(name), after.get(name)) for name in units]
     return ComparisonOut(adopted=mine, other=theirs, changes=changes)
 
 
-def _logarithms(parameters: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
+def _logarithms(parameters: Mapping[str, KnownParameter]) -> dict[str, tuple[float, float | None]]:
     """Return the logarithm of every parameter's median with the standard deviation from its 90 % interval."""
     from jackettwin.intervals import NORMAL_90
 
     found = {}
     for name, known in parameters.items():
-        span = known["interval_90"]
+        span = known.interval_90
         std = None if span is None else log(span[1] / span[0]) / (2.0 * NORMAL_90)
-        found[name] = (log(known["median"]), std)
+        found[name] = (log(known.median), std)
     return found
 
 

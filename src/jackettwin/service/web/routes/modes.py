@@ -126,7 +126,7 @@ def damping_budget(
     """Return the damping of each mode by source; empty for past times, for which no update exists."""
     asked = known_version(connection, asset, version)
     found = said.twin(connection, parts, asked, signals.with_zone(at, "at"))
-    return Page(items=found.parameters.get("budget", []))
+    return Page(items=found.parameters.budget)
 
 
 @router.get("/assets/{asset}/sensitivity", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
@@ -136,7 +136,7 @@ def sensitivity(
     """Return the sensitivity of each measured mode to every updated parameter at the present medians."""
     asked = known_version(connection, asset, version)
     found = said.twin(connection, parts, asked)
-    return Page(items=found.parameters.get("sensitivity", []))
+    return Page(items=found.parameters.sensitivity)
 
 
 @router.get("/assets/{asset}/explore", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, Field
 
@@ -85,23 +85,6 @@ class WatchOut(BaseModel):
     smallest: list[SmallestChangeOut] = []
 
 
-class TwinOut(BaseModel):
-    """State of the twin at a time: modes and parameters with intervals, and their records."""
-
-    asset: str
-    version: int
-    model_hash: str
-    code_version: str
-    state_hash: str
-    days: int
-    records: int
-    first_utc: datetime | None
-    last_utc: datetime | None
-    modes: list[dict[str, Any]]
-    parameters: dict[str, Any]
-    status: str
-
-
 class Value(BaseModel):
     """A number with its 90 % interval; null if unknown."""
 
@@ -134,3 +117,73 @@ class SensitivityOut(BaseModel):
     damping_ratio: float
     frequency_sensitivity: dict[str, float]
     damping_sensitivity: dict[str, float]
+
+
+class TwinMode(BaseModel):
+    """A mode in the mean of records, with their number; standard deviations are those of the mean."""
+
+    mode: int
+    label: str
+    frequency_hz: float
+    frequency_std_hz: float
+    damping_ratio: float
+    damping_ratio_std: float
+    records: int
+
+
+class KnownParameter(BaseModel):
+    """A parameter of supports or rotor: median and 90 % interval, its name in words, and both as text.
+
+    ``day`` is the day that the value is of if it is followed from day to day; otherwise it is of all records.
+    """
+
+    median: float
+    interval_90: tuple[float, float] | None = None
+    unit: str
+    words: str
+    text: str
+    day: str | None = None
+
+
+class QuestionOut(BaseModel):
+    """A question of the report's first page, and what is said to it in short."""
+
+    question: str
+    answer: str
+
+
+class Knowledge(BaseModel):
+    """What is known of the supports by all records until a time; empty before there is an estimate.
+
+    ``reliable`` is false if the model cannot reproduce the measurements on any ground, which ``status``
+    says, and ``reported`` whether there is a report.
+    """
+
+    law: str | None = None
+    status: str | None = None
+    reliable: bool = False
+    records: int = 0
+    until_utc: datetime | None = None
+    parameters: dict[str, KnownParameter] = {}
+    answers: list[QuestionOut] = []
+    budget: list[BudgetOut] = []
+    sensitivity: list[SensitivityOut] = []
+    statement: str = ""
+    reported: bool = False
+
+
+class TwinOut(BaseModel):
+    """State of the twin at a time: modes and parameters with intervals, and their records."""
+
+    asset: str
+    version: int
+    model_hash: str
+    code_version: str
+    state_hash: str
+    days: int
+    records: int
+    first_utc: datetime | None
+    last_utc: datetime | None
+    modes: list[TwinMode]
+    parameters: Knowledge
+    status: str
