@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located, require
-from jackettwin.records import parse_time
+from jackettwin.records import day_zero, parse_time
 
 Stamps = npt.NDArray[np.datetime64]
 Stored = dict[str, npt.NDArray[Any]]
@@ -26,8 +26,6 @@ _DATES = ("%d.%m.%Y", "%Y/%m/%d", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%d-%b-%Y"
 _CLOCKS = ("", " %H:%M", " %H:%M:%S", " %H:%M:%S.%f", " %I:%M %p", " %I:%M:%S %p", "T%H:%M:%S", "T%H%M%S")
 _CLOCK = re.compile(r"\d\d?:\d\d(:\d\d([.,]\d+)?)?( ?[AP]M)?", re.IGNORECASE)
 _ZONED = re.compile(r":\d\d.*(Z|[+-]\d\d:?\d\d)$")
-_SERIAL = ((2e4, 8e4, datetime(1899, 12, 30), 0.0), (6.9e5, 8e5, datetime(1, 1, 1), 367.0))
-"""Serial days of Excel and of MATLAB: range, date of day zero, and offset."""
 _UNIX = ((1e8, 1e11, 1e3), (1e11, 1e14, 1.0), (1e14, 1e17, 1e-3), (1e17, 1e20, 1e-6))
 """Unix seconds, milli-, micro- and nanoseconds: range, and milliseconds in one."""
 _ALLOWED = "ISO 8601: 2025-01-01T13:00:00Z"
@@ -77,7 +75,7 @@ def _says_its_zone(name: str, cells: npt.NDArray[Any]) -> bool:
     """Tell whether times are instants: by their column's name, each by itself, as Unix times or days."""
     if cells.dtype.kind == "f":
         typical = float(np.nanmedian(cells))
-        return not any(low < typical < high for low, high, *_ in _SERIAL)
+        return day_zero(typical) is None
     zoned = cells.dtype.kind == "U" and bool(_ZONED.search(cells[0]))
     return zoned or re.sub(r"[^a-z]", "", name.lower()) in _UTC_NAMES
 
@@ -213,15 +211,12 @@ def _parsed(text: str) -> datetime:
 def _numbered(name: str, x: FloatArray) -> Stamps:
     """Return times from numbers: Unix times, Excel's or MATLAB's days, or days of a column called so."""
     typical = float(np.nanmedian(x))
-    start, milliseconds = None, x * 86400e3
-    for low, high, origin, less in _SERIAL:
-        if low < typical < high:
-            start, milliseconds = origin, (x - less) * 86400e3
+    start, milliseconds = day_zero(typical), x * 86400e3
     for low, high, unit in _UNIX:
         if low < typical < high:
-            start, milliseconds = datetime(1970, 1, 1), unit * x
+            start, milliseconds = np.datetime64(0, "ms"), unit * x
     if start is None and "day" in name.lower():
-        start = datetime(2000, 1, 1)
+        start = np.datetime64("2000-01-01")
     if start is None:
         raise InputError(
             "numbers whose origin is not known", value=typical,
@@ -229,6 +224,6 @@ def _numbered(name: str, x: FloatArray) -> Stamps:
             remedy="write the times as 2025-01-01T13:00:00Z",
         )  # fmt: skip
     whole = np.where(np.isfinite(milliseconds), np.round(milliseconds), 0).astype(np.int64)
-    stamps = np.datetime64(start, "ms") + whole.astype("timedelta64[ms]")
+    stamps: Stamps = start.astype("datetime64[ms]") + whole.astype("timedelta64[ms]")
     stamps[~np.isfinite(milliseconds)] = np.datetime64("NaT")
     return stamps

@@ -21,7 +21,7 @@ from .readers.bladed import read_output as read_output
 from .readers.channels import FileDefaults as FileDefaults
 from .readers.delimited import MISSING as MISSING, text_table as text_table
 from .readers.registry import Format as Format, read_table as read_table
-from .readers.stamps import parse_time as parse_time, read_zone as read_zone
+from .readers.stamps import day_zero as day_zero, parse_time as parse_time, read_zone as read_zone
 from .readers.table import ReadTable as ReadTable
 from .record import (
     Channel as Channel,

@@ -122,15 +122,15 @@ def test_hours_of_half_a_day_are_read_and_quoted_as_they_stand(stamp: str, hour:
         read_text(f"time,acc_x [g]\n{first},1\n02/14/2025 13:00:00 AM,2\n", tmp_path)
 
 
-@pytest.mark.parametrize("digits", [6, 10])
+@pytest.mark.parametrize(("noon", "digits"), [(45950.5, 6), (45950.5, 10), (739910.5, 10)])
 @pytest.mark.parametrize("heading", ["time", "Zeitstempel", "t [d]"])
-def test_days_of_a_spreadsheet_are_dates(heading: str, digits: int, tmp_path: Path) -> None:
-    """Day 45950 is the 20th of October 2025; six decimals are 0.09 s, a coarse clock."""
-    rows = "".join(f"{45950.5 + k / 25 / 86400:.{digits}f},{k % 7}\n" for k in range(500))
+def test_days_of_a_spreadsheet_are_dates(heading: str, noon: float, digits: int, tmp_path: Path) -> None:
+    """Day 45950, MATLAB's 739910, is the 20th of October 2025; six decimals are 0.09 s, a coarse clock."""
+    rows = "".join(f"{noon + k / 25 / 86400:.{digits}f},{k % 7}\n" for k in range(500))
     record = read_text(f"{heading},acc_x [g]\n{rows}", tmp_path)
     assert record.sample_rate_hz == pytest.approx(25.0, rel=1e-3)
     assert record.start_utc is not None and record.start_utc.isoformat()[:19] == "2025-10-20T12:00:00"
-    assert any("counts days since 1899-12-30" in text for text in record.metadata["remarks"])
+    assert any("counts days as spreadsheets or MATLAB do" in text for text in record.metadata["remarks"])
     seconds = read_text(f"{heading[:4]}_s,acc_x [g]\n45950.0,1\n45950.04,2\n45950.08,3\n", tmp_path)
     assert (seconds.sample_rate_hz, seconds.start_utc) == (25.0, None)
 

@@ -178,15 +178,25 @@ def _stamp(text: str, cell: str, line: int) -> np.datetime64:
         ) from None
 
 
-_EXCEL_DAYS, _EXCEL_ZERO = (2e4, 8e4), np.datetime64("1899-12-30", "ns")
-_EXCEL_STEP = 1e-4
+_DAYS = ((2e4, 8e4, np.datetime64("1899-12-30")), (6.9e5, 8e5, np.datetime64("0000-01-01") - 1))
+"""Days of spreadsheets from 1954 to 2119 and of MATLAB from 1889 to 2190: range, and the date of day zero."""
+_LONGEST_STEP = 1e-4
 """Longest step in days; in seconds it is 10,000 samples a second, more than a structure needs."""
-EXCEL = "counts days since 1899-12-30, as spreadsheets do: read as dates"
+COUNTED_DAYS = "counts days as spreadsheets or MATLAB do: read as dates"
 """Remark on a column of such days."""
 
 
+def day_zero(day: float) -> np.datetime64 | None:
+    """Return the date of day zero of days as spreadsheets or MATLAB count them; None of another number.
+
+    >>> [str(day_zero(day) + int(day)) for day in (45300.0, 739260.0)]
+    ['2024-01-09', '2024-01-09']
+    """
+    return next((zero for low, high, zero in _DAYS if low < day < high), None)
+
+
 def dates_of_days(numbers: FloatArray) -> npt.NDArray[np.datetime64] | None:
-    """Return the dates of a spreadsheet's days (1954 to 2119), (n_samples,); None if they are not such days.
+    """Return the dates of days as spreadsheets or MATLAB count them, (n_samples,); None of other numbers.
 
     >>> dates_of_days(45950.5 + np.arange(9) / 25.0 / 86400.0)[5].astype("datetime64[ms]")
     np.datetime64('2025-10-20T12:00:00.200')
@@ -195,11 +205,12 @@ def dates_of_days(numbers: FloatArray) -> npt.NDArray[np.datetime64] | None:
     if numbers.size < 2 or not np.isfinite(numbers).all():
         return None
     low, high = numbers.min(), numbers.max()
-    if not (_EXCEL_DAYS[0] < low < high < _EXCEL_DAYS[1] and high - low < _EXCEL_STEP * (numbers.size - 1)):
+    zero, last = day_zero(low), day_zero(high)
+    if zero is None or zero != last or not 0.0 < high - low < _LONGEST_STEP * (numbers.size - 1):
         return None
     days = np.floor(numbers)
     nanoseconds = np.round((numbers - days) * _DAY_S * 1e9).astype("timedelta64[ns]")
-    return np.asarray(_EXCEL_ZERO + days.astype("timedelta64[D]") + nanoseconds)
+    return np.asarray((zero + days.astype("timedelta64[D]")).astype("datetime64[ns]") + nanoseconds)
 
 
 def parse_time(text: str, *, file: Path | str | None = None) -> datetime:

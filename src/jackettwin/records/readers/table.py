@@ -26,7 +26,7 @@ from jackettwin.records.readers.channels import (
 )
 from jackettwin.records.readers.description import ChannelEntry, Description
 from jackettwin.records.readers.stamps import (
-    EXCEL,
+    COUNTED_DAYS,
     UNSAID,
     ambiguous_date,
     dates_of_days,
@@ -127,7 +127,7 @@ def table_from_columns(
         days = dates_of_days(columns[time]) if may_be_days and columns[time].dtype.kind == "f" else None
         if days is not None:
             columns = [*columns[:time], days, *columns[time + 1 :]]
-            remarks.append(f"column {names[time]} {EXCEL}")
+            remarks.append(f"column {names[time]} {COUNTED_DAYS}")
         times_s, start_utc = seconds(columns[time], unit)
         dated = columns[time].dtype.kind == "M" and "start_utc" not in known
         known = {"start_utc": start_utc, "zone_said": not dated, **known, "times_s": times_s}
