@@ -108,6 +108,26 @@ def test_a_german_table_says_the_same_as_an_english_one(tmp_path: Path) -> None:
         read_modal_table(german)
 
 
+def test_a_table_as_analysts_export_it_says_the_same(wide: Columns, tmp_path: Path) -> None:
+    """Titles above, numbered rows, the newest first, and another mode beside those that are watched."""
+    n = len(wide["time"])
+    other = np.linspace(1.0, 1.1, n) + 0.01 * np.cos(np.arange(n))
+    plain = written(wide | {"T1": wide["temperature"]}, tmp_path / "a.csv").read_text().splitlines()
+    header, *body = [f'"",{plain[0]},torsion_1,w,w_damping', *(
+        f"{i},{line},{x:.4f},{x:.3f},0.01" for i, (line, x) in enumerate(zip(plain[1:], other, strict=True))
+    )]  # fmt: skip
+    path = tmp_path / "b.csv"
+    path.write_text("\n".join(["Modes of 2024,,,,,,,,", "turbine A01", header, *body[::-1]]))
+    one = read_modal_table(tmp_path / "a.csv", columns=("f1", "f2"))
+    found = read_modal_table(path, columns=("f1", "f2"))
+    np.testing.assert_array_equal(found.history.frequency, one.history.frequency)
+    assert found.history.condition_names == one.history.condition_names == ("temperature", "T1")
+    assert "not taken as conditions: a column without name, torsion_1, w, w_damping" in found.remarks
+    (tmp_path / "c.xlsx").write_bytes(b"PK\x03\x04 of Excel")
+    with pytest.raises(InputError, match="save the sheet as CSV"):
+        read_modal_table(tmp_path / "c.xlsx")
+
+
 def test_learnt_anew_after_the_change_there_is_none(wide: Columns, tmp_path: Path) -> None:
     path = written(wide, tmp_path / "a.csv")
     done = invoke(

@@ -88,9 +88,14 @@ def read_modal_table(
         stored = _read(path)
         if not columns:
             stored = _with_known_names(stored)
-        time_names, stamps, said = table_times(stored, zone)
+        stored, time_names, stamps, said = _in_order(stored, zone)
         days, origin = _days(stamps)
-        wanted = _conditions(stored, time_names, columns, conditions)
+        wanted, left = _conditions(stored, time_names, columns, conditions)
+        if left:
+            said = (
+                *said,
+                f"not taken as conditions: {', '.join(name or 'a column without name' for name in left)}",
+            )
         if columns:
             history, remarks = _wide(stored, days, tuple(columns), wanted)
         else:
@@ -121,7 +126,11 @@ def _read(path: Path) -> Columns:
 
 
 def _read_text(raw: bytes) -> pa.Table:
-    rows = text_table(raw).rows
+    require(
+        not raw.startswith(b"PK\x03\x04"), "is a workbook or an archive",
+        allowed="CSV or Parquet with a header", remedy="save the sheet as CSV",
+    )  # fmt: skip
+    rows = _below_titles(text_table(raw).rows)
     require(rows, "holds no rows", allowed="a header and rows", remedy="export it again")
     names, body = rows[0], rows[1:]
     for number, row in enumerate(body, start=2):
@@ -133,6 +142,14 @@ def _read_text(raw: bytes) -> pa.Table:
             )
     columns = zip(*body, strict=True) if body else [()] * len(names)
     return pa.Table.from_arrays([pa.array(cells, pa.string()) for cells in columns], names)
+
+
+def _below_titles(rows: list[list[str]]) -> list[list[str]]:
+    """Return the rows from the header on: lines above it have one cell, or it alone is filled."""
+    widest = max(map(len, rows), default=0)
+    single = (sum(bool(cell) for cell in row) < 2 for row in rows)
+    top = next((i for i, alone in enumerate(single) if not alone), 0)
+    return rows[top:] if widest > 1 else rows
 
 
 def _values(column: Any) -> npt.NDArray[Any]:
@@ -205,6 +222,20 @@ def _model_label(word: str) -> str:
         return word
 
 
+def _in_order(
+    stored: Columns, zone: tzinfo | None
+) -> tuple[Columns, tuple[str, ...], Stamps, tuple[str, ...]]:
+    """Return a table with its oldest row first, and what :func:`table_times` tells of it."""
+    try:
+        return stored, *table_times(stored, zone)
+    except InputError as error:
+        newest_last = {name: x[::-1] for name, x in stored.items()}
+        try:
+            return newest_last, *table_times(newest_last, zone)
+        except InputError:
+            raise error from None
+
+
 def _days(stamps: Stamps) -> tuple[FloatArray, datetime]:
     """Return days since the first midnight, and that midnight."""
     midnight = stamps[0].astype("datetime64[D]")
@@ -214,8 +245,8 @@ def _days(stamps: Stamps) -> tuple[FloatArray, datetime]:
 
 def _conditions(
     stored: Columns, time_names: tuple[str, ...], columns: Sequence[str], given: Sequence[str] | None
-) -> tuple[str, ...]:
-    """Return the names of the columns that are conditions."""
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the names of the columns that are conditions, and of numbers that are not taken for such."""
     for name in (*columns, *(given or ())):
         if name not in stored:
             raise InputError(
@@ -228,12 +259,33 @@ def _conditions(
                 "a column that is watched, or the times, cannot be a condition", field="--conditions",
                 value=", ".join(circular), remedy="name what was measured beside the modes",
             )  # fmt: skip
-        return tuple(given)
+        return tuple(given), ()
     taken = {*time_names, "label", *QUANTITIES, *(c + s for c in columns for s in _SUFFIXES)}
-    return tuple(
-        name for name, x in stored.items()
-        if x.dtype.kind == "f" and not (name in taken or name.lower() in _STATES or _MODAL.search(name))
-    )  # fmt: skip
+    numbers = [n for n, x in stored.items() if x.dtype.kind == "f"]
+    free = [n for n in numbers if n not in taken and n.lower() not in _STATES]
+    left = tuple(n for n in free if _MODAL.search(n) or _names_a_mode(n, stored) or _counts(stored[n]))
+    return tuple(n for n in free if n not in left), left
+
+
+def _counts(x: FloatArray) -> bool:
+    """Tell whether a column numbers the rows: as a condition it would explain every slow change away."""
+    steps = np.diff(x)
+    return steps.size > 1 and bool(steps[0] != 0.0 and (steps == steps[0]).all())
+
+
+def _names_a_mode(name: str, stored: Columns) -> bool:
+    """Tell whether a column is a mode's frequency: by its label, or by the damping or direction beside it.
+
+    A single letter with a number is none: T1 is a temperature.
+    """
+    letters = re.sub(r"[\W\d_]", "", name)
+    if any(name + suffix in stored for suffix in ("_damping", "_angle_deg")):
+        return True
+    try:
+        read_mode_label(name)
+    except InputError:
+        return False
+    return len(letters) > 1 and bool(re.search(r"\d", name))
 
 
 def _number(stored: Columns, name: str, rows: int) -> FloatArray:
