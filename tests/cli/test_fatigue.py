@@ -78,6 +78,31 @@ def test_gaps_are_scaled_and_said(stress: Path, tmp_path: Path) -> None:
     found = answer("stress", str(path), "--column", "leg")
     assert found["damage"] == pytest.approx(whole["damage"], rel=0.05)
     assert "25 % of the samples are missing" in found["warnings"][0]
+    # a logger that stood still leaves no rows at all
+    there = np.isfinite(values)
+    rows = np.stack([t[there], values[there]], axis=1)
+    np.savetxt(path, rows, delimiter=",", header="time_s,leg", comments="")
+    assert answer("stress", str(path), "--column", "leg")["damage"] == pytest.approx(
+        found["damage"], rel=1e-9
+    )
+
+
+def test_what_a_column_does_not_state_is_said(tmp_path: Path) -> None:
+    """A series in ksi looks like one of weaker stress: what is assumed of it stands beside its damage."""
+    path = tmp_path / "columns.csv"
+    t = np.arange(0.0, 600.0, 0.05)
+    leg = 40.0 * np.sin(np.pi * t)
+    spiked = np.where(np.arange(t.size) == 6000, 900.0, leg)
+    columns = np.stack([t, leg, leg / 6.894757293168, leg / 6.894757293168e-3, spiked, 0.0 * t], axis=1)
+    names = "time_s,leg,leg_ksi,leg_psi,spiked_mpa,dead_mpa"
+    np.savetxt(path, columns, delimiter=",", header=names, comments="", fmt="%.12g")
+    found = {name: answer("stress", str(path), "--column", name) for name in names.split(",")[1:]}
+    assert found["leg"]["warnings"] == ["no unit of leg is stated: MPa is assumed (--unit)"]
+    for name in ("leg_ksi", "leg_psi"):
+        assert found[name]["warnings"] == []
+        assert found[name]["damage"] == pytest.approx(found["leg"]["damage"], rel=1e-8)
+    assert "a spike?" in found["spiked_mpa"]["warnings"][0]
+    assert "is constant" in found["dead_mpa"]["warnings"][0]
 
 
 def test_scattered_gaps_lose_no_range(stress: Path, tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 import numpy as np
@@ -19,13 +19,17 @@ if TYPE_CHECKING:
     from jackettwin.fatigue import Cycles, Environment, SNCurve
     from jackettwin.records import ReadTable
 
-_UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.894757293168e6}
+_UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "psi": 6894.757293168, "ksi": 6.894757293168e6}
 _STRAIN_UNITS = {unit: to_si("strain", unit) for unit in known_units("strain")}
 _WEAKEST_PA = 1e4
 """Stress range below which the unit is probably wrong."""
 _USUAL_PA = (1e6, 1e9)
 """Between which the largest range of a series usually lies."""
 _N_EQ = 1e7
+_GAP_STEPS = 10.0
+"""Of the usual step, from which a step between rows is a gap: shorter ones hide no cycle that counts."""
+_ONE_CYCLE, _FEWEST = 0.5, 100
+"""Share of all damage that the largest cycle of so many or more does, from which it is said."""
 _ROSETTE = (1, 3, 4)
 """How many gauges may stand at one place."""
 _HOT_K = 1e-4
@@ -83,9 +87,9 @@ def stress_(
     chosen = read_curve(curve, environment, *(() if edition is None else (edition,)))
     table = read_table(file)
     taken = _unit_of(table, file, column, unit, _UNITS, "MPa", "stress")
-    values = _column(table, file, column) * _UNITS[taken]
-    document = {"file": str(file), "column": column, "unit": taken}
-    document |= _counted(values, file, column, taken, chosen, thickness_mm, warnings=[])
+    values = _column(table, file, column) * _UNITS[taken.name]
+    document = {"file": str(file), "column": column, "unit": taken.name}
+    document |= _counted(values, table, file, column, taken, chosen, thickness_mm, warnings=[])
     return Reply(document, lambda: _show(document))
 
 
@@ -157,8 +161,8 @@ def strain_(
     warm = None if temperature is None else _column(table, file, temperature)
     known = None if per_kelvin is None else 1e-6 * per_kelvin
     gauges, strains, warnings = [], [], list[str]()
-    for name in columns:
-        taken = _unit_of(table, file, name, unit, _STRAIN_UNITS, "um/m", "strain")
+    units = [_unit_of(table, file, name, unit, _STRAIN_UNITS, "um/m", "strain") for name in columns]
+    for name, (taken, _) in zip(columns, units, strict=True):
         found = steady_strain(_column(table, file, name) * _STRAIN_UNITS[taken], warm, per_kelvin=known)
         per = found.per_kelvin
         require(
@@ -194,17 +198,34 @@ def strain_(
         poisson=poisson,
     )
     name = ", ".join(columns)
-    document: dict[str, Any] = {"file": str(file), "column": name, "unit": gauges[0]["unit"]}
+    document: dict[str, Any] = {"file": str(file), "column": name, "unit": units[0].name}
     document |= {"gauges": gauges, "angles_deg": list(turned), "scf": scf}
-    document |= _counted(values, file, name, str(gauges[0]["unit"]), chosen, thickness_mm, warnings=warnings)
+    document |= _counted(
+        values,
+        table,
+        file,
+        name,
+        max(units, key=lambda u: u.assumed),
+        chosen,
+        thickness_mm,
+        warnings=warnings,
+    )
     return Reply(document, lambda: _show(document))
+
+
+class _Unit(NamedTuple):
+    """Unit of a column, and whether nothing states it."""
+
+    name: str
+    assumed: bool = False
 
 
 def _counted(
     values: FloatArray,
+    table: ReadTable,
     file: Path,
     column: str,
-    unit: str,
+    unit: _Unit,
     chosen: SNCurve,
     thickness_mm: float | None,
     *,
@@ -214,20 +235,34 @@ def _counted(
     from jackettwin.fatigue import equivalent_range
 
     with working("counting cycles"):
-        cycles, scale, said = _across_gaps(values, file, column)
+        cycles, scale, said = _across_gaps(values, table.times_s, file, column)
     widest = float(cycles.ranges.max(initial=0.0))
     require(
         widest < STRONGEST_PA,
         f"no steel resists stress ranges of {widest / 1e6:.3g} MPa",
         file=file,
         field=column,
-        value=f"in {unit}",
-        remedy=_other_unit(widest, unit),
+        value=f"in {unit.name}",
+        remedy=_other_unit(widest, unit.name),
     )
+    weak = f"no range is larger than {widest:.3g} Pa"
+    require(
+        not unit.assumed or widest == 0.0 or widest > _WEAKEST_PA, f"no unit is stated, and {weak}",
+        file=file, field=column, value=f"in {unit.name}", remedy="state the unit with --unit",
+    )  # fmt: skip
     warnings = [*warnings, *said]
+    if unit.assumed:
+        warnings.append(f"no unit of {column} is stated: {unit.name} is assumed (--unit)")
     if 0.0 < widest < _WEAKEST_PA:
-        warnings.append(f"no range is larger than {widest:.3g} Pa: is the series in {unit}? (--unit)")
+        warnings.append(f"{weak}: is the series in {unit.name}? (--unit)")
+    if widest == 0.0:
+        warnings.append(f"{column} is constant: is its sensor dead?")
     thickness = None if thickness_mm is None else 1e-3 * thickness_mm
+    damage = scale * chosen.damage(cycles.ranges, cycles.numbers, thickness_m=thickness)
+    largest = scale * float(chosen.damage(np.array([widest]), np.ones(1), thickness_m=thickness))
+    if cycles.ranges.size > _FEWEST and largest > _ONE_CYCLE * damage:
+        share = 100.0 * min(largest / damage, 1.0)
+        warnings.append(f"one cycle of {1e-6 * widest:.3g} MPa does {share:.0f} % of the damage: a spike?")
     closed = 0.0
     if cycles.full.size:
         closed = scale * float(chosen.damage(cycles.full, np.ones(cycles.full.size), thickness_m=thickness))
@@ -242,7 +277,7 @@ def _counted(
         "equivalent_range_mpa": {
             f"m{m}": 1e-6 * scale ** (1.0 / m) * equivalent_range(cycles, m, _N_EQ) for m in (3, 5)
         },
-        "damage": scale * chosen.damage(cycles.ranges, cycles.numbers, thickness_m=thickness),
+        "damage": damage,
         "damage_by_cycles": closed,
         "warnings": warnings,
         "left_out": omission_documents([Omission("mean stress"), Omission("the order of cycles")]),
@@ -262,7 +297,7 @@ def _unit_of(
     units: dict[str, float],
     usual: str,
     what: str,
-) -> str:
+) -> _Unit:
     """Return the unit of a column: the option's, the file's, that of its name, or the usual one."""
     _column(table, file, column)
     said = table.channels.get(column)
@@ -283,7 +318,8 @@ def _unit_of(
             value=unit,
             remedy="omit the option",
         )
-    return unit or stated or usual
+    stated = unit or stated
+    return _Unit(usual, assumed=True) if stated is None else _Unit(stated)
 
 
 def _other_unit(widest_pa: float, unit: str) -> str:
@@ -295,18 +331,33 @@ def _other_unit(widest_pa: float, unit: str) -> str:
     return f"state its own unit, as --unit {fitting[0]}" if fitting else "convert it to a unit of --unit"
 
 
-def _across_gaps(values: FloatArray, file: Path, column: str) -> tuple[Cycles, float, list[str]]:
-    """Return the cycles across gaps, the factor for the missing time, and warnings."""
+def _across_gaps(
+    values: FloatArray, times_s: FloatArray | None, file: Path, column: str
+) -> tuple[Cycles, float, list[str]]:
+    """Return the cycles across gaps, the factor for the missing time, and warnings.
+
+    A gap is samples without a number, or rows that are not there.
+    """
     from jackettwin.fatigue import count
 
     known = np.isfinite(values)
     require(known.any(), "contains no numbers", file=file, field=column, remedy="export the file again")
-    if known.all():
-        return count(values), 1.0, []
+    missing = 1.0 - float(known.mean()) * (1.0 - _rows_missing(times_s))
     # the series did get from one side of a gap to the other: its slow cycles are counted across
-    missing = float(1.0 - known.mean())
     said = f"{100 * missing:.2g} % of the samples are missing: gaps are bridged, damage scaled to the whole"
-    return count(values[known]), 1.0 / (1.0 - missing), [said]
+    return count(values[known]), 1.0 / (1.0 - missing), [said] if missing else []
+
+
+def _rows_missing(times_s: FloatArray | None) -> float:
+    """Return the share of the time in which no row stands, where others follow each other by a usual step."""
+    if times_s is None or times_s.size <= _FEWEST:
+        return 0.0
+    steps = np.diff(times_s)
+    usual = float(np.median(steps))
+    gaps = steps[steps > _GAP_STEPS * usual]
+    if not usual > 0.0 or not gaps.size:
+        return 0.0
+    return float((gaps - usual).sum() / (steps.sum() + usual))
 
 
 def _show(document: dict[str, Any]) -> None:
