@@ -50,6 +50,24 @@ def test_planted_levels_and_noise_are_found(rng: np.random.Generator) -> None:
     assert wrong.log_likelihood < found.log_likelihood - 100.0
 
 
+def test_the_search_ends_at_one_place_from_wherever_it_starts(rng: np.random.Generator) -> None:
+    """From steps that go too far, and from a bound, on which a search once stayed for ever."""
+    y, H, which, forces = planted(rng)
+    some = _Evidence.of(y, STEP_S, H, which, forces, (0, 1))
+    best, cost, evaluations = some.most_probable()
+    assert evaluations < 30
+    for far in (0.05, 1e3):
+        away = replace(some, start=some.start + np.log(far) * (np.arange(some.start.size) < 2))
+        # the prior moves with the start, by three deviations of 3: of the levels' 0.05 some hundredths
+        assert_allclose(away.most_probable()[0][:2], best[:2], atol=0.05)
+    low, high = best - 1.0, best + 1.0
+    for k, bound in ((0, low), (1, high)):
+        z = best.copy()
+        z[k] = bound[k]
+        unit = np.linalg.inv(np.linalg.cholesky(some.information(best)))
+        assert some._searched(z, unit, low, high)[1] == pytest.approx(cost, abs=1.0)
+
+
 def test_the_gradient_is_that_of_the_likelihood(rng: np.random.Generator) -> None:
     y, H, which, forces = planted(rng)
     omega = 2.0 * np.pi * np.fft.rfftfreq(N, STEP_S)[which]

@@ -21,6 +21,7 @@ from jackettwin.identification.many_records.fusion import average as average_of_
 from jackettwin.identification.status import ModeStatus
 from jackettwin.intervals import NORMAL_90, NORMAL_95
 from jackettwin.records import Record, read_record
+from jackettwin.response import Sensor
 from jackettwin.twin import (
     OBSERVATION,
     STATE,
@@ -171,6 +172,16 @@ def test_what_is_no_mode_does_not_count() -> None:
     wave = replace(estimate(0.1, 0.05), status=ModeStatus.WAVE)
     state, _ = advance(TwinState("model"), observation({1: estimate(0.18, 0.01), 2: wave}, NOON))
     assert list(state.totals[ALL].modes) == [1]
+
+
+def test_the_shape_that_is_kept_is_the_one_in_which_waves_lag() -> None:
+    subspace = estimate(0.18, 0.01)
+    refined = replace(subspace, mode_shape=np.array([1.1 + 0.0j]), unrefined=subspace)
+    sensors = (Sensor("a", direction=(1.0, 0.0, 0.0), node="top"),)
+    for mode in (subspace, refined):
+        seen = observation({1: mode}, NOON, sensors=sensors)
+        state, _ = advance(TwinState("model", with_shapes=True), seen)
+        assert state.clearest["1"].shape == subspace.mode_shape
 
 
 def test_a_year_of_a_turbine_is_five_megabytes_at_most() -> None:

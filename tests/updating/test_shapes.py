@@ -114,6 +114,18 @@ def test_a_profile_is_of_no_direction_and_tells_softer_feet(profiles: Problem) -
         np.testing.assert_allclose(J[3:, j], (up - down) / (2 * h), rtol=1e-4, atol=1e-4)
 
 
+def test_what_lags_by_a_quarter_of_a_period_is_no_part_of_a_profile(profiles: Problem) -> None:
+    """y₂/y₁ = φ₂/φ₁ + 2iζr at resonance, of a mode φ and another's slow motion r: its real part is exact."""
+    for one in profiles.states[0].shapes:
+        k = one.shape.size // 2
+        lags = one.shape + 0.01j * np.append(np.zeros(k), one.shape[:k])
+        beside = replace(one, shape=lags)
+        x = np.ones((1, one.at_sensors.shape[1]), complex)
+        np.testing.assert_allclose(beside.values(x), one.values(x), rtol=1e-12)
+        moved = replace(one, shape=one.shape + 0.01 * np.append(np.zeros(k), one.shape[:k]))
+        np.testing.assert_allclose(moved.values(x), one.values(x) - 0.01 / one.std, rtol=1e-9)
+
+
 def test_a_model_that_reaches_further_has_the_same_shapes(problem: Problem, profiles: Problem) -> None:
     for one in (problem, profiles):
         z = np.log([2e8, 0.3])

@@ -40,7 +40,8 @@ _SMOOTHED = 4
 own: accelerations rise with f², and slow ones would be lost among quicker ones."""
 _DELTA = 1e-4
 _SCORED = 4
-"""Steps by which the search begins."""
+_SHORTER, _SHORTEST = 0.4, 0.1
+"""Steps by which the search begins, and how one is shortened that goes too far."""
 _ROUNDS, _SETTLED = 4, 2.0
 """Searches, each in the units where the last one ended, until −ln L promises to fall by no more than this: at
 work the first alone ended up to 140 too early."""
@@ -203,18 +204,23 @@ class _Evidence:
         # of what stands beside another, the sum of both
         reach = np.minimum(_REACH, 4.0 * np.linalg.norm(np.linalg.inv(self.prior), axis=1))
         low, high = self.start - reach, self.start + reach
-        z, (value, gradient) = self.start, self.cost(self.start)
+        z, (value, gradient), evaluations = self.start, self.cost(self.start), 1
         for _ in range(_SCORED):
-            step = np.linalg.solve(self.information(z), gradient)
-            tried = np.clip(z - step, low, high)
-            there = self.cost(tried)
+            step, share = np.linalg.solve(self.information(z), gradient), 1.0
+            while share >= _SHORTEST:
+                tried = np.clip(z - share * step, low, high)
+                there, evaluations = self.cost(tried), evaluations + 1
+                if there[0] < value:
+                    break
+                share *= _SHORTER
             if not there[0] < value:
                 break
             z, (value, gradient) = tried, there
-        evaluations = 1 + _SCORED
         for _ in range(_ROUNDS):
             curvature = self.information(z)
-            free = np.where((z > low) & (z < high), gradient, 0.0)
+            # a level at a bound is free to come back from it
+            outwards = ((z <= low) & (gradient > 0.0)) | ((z >= high) & (gradient < 0.0))
+            free = np.where(outwards, 0.0, gradient)
             if 0.5 * float(free @ np.linalg.solve(curvature, free)) < _SETTLED:
                 break
             z, value, number = self._searched(z, np.linalg.inv(np.linalg.cholesky(curvature)), low, high)
@@ -227,13 +233,18 @@ class _Evidence:
     ) -> tuple[FloatArray, float, int]:
         """Return the best z (n,) near another, between bounds, its cost, and the number of evaluations.
 
-        Beyond a bound nothing changes, so that a search that knew of a slope there would end before its time.
+        Beyond a bound the likelihood does not change, so that a search that knew of its slope there would end
+        before its time; how far it is beyond counts instead, so that it finds its way back.
         """
 
         def cost(x: FloatArray) -> tuple[float, FloatArray]:
             there = z + x @ unit
-            here, slope = self.cost(np.clip(there, low, high))
-            return here, np.asarray(unit @ np.where((there > low) & (there < high), slope, 0.0))
+            inside = np.clip(there, low, high)
+            here, slope = self.cost(inside)
+            beyond = there - inside
+            return here + 0.5 * float(beyond @ beyond), np.asarray(
+                unit @ np.where(beyond == 0.0, slope, beyond)
+            )
 
         found = minimize(cost, 0.0 * z, jac=True, method="L-BFGS-B", options={"maxiter": 60, "ftol": 3e-6})
         return np.clip(z + found.x @ unit, low, high), float(found.fun), int(found.nfev)

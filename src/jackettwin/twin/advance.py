@@ -168,7 +168,9 @@ def _shapes(seen: Observation, of_modes: bool) -> dict[str, ClearShape]:
     if len(sensors) < len(seen.identification.channels):
         return {}
     shapes = {
-        str(number): ClearShape(known.mac, seen.record_id, mode.frequency_hz, sensors, mode.mode_shape)
+        str(number): ClearShape(
+            known.mac, seen.record_id, mode.frequency_hz, sensors, mode.lagging.mode_shape
+        )
         for number, (mode, known) in seen.modes.items()
         if of_modes and mode.status.is_a_mode
     }

@@ -312,12 +312,13 @@ def _shape_misfit(
 
     None where a channel lies so far out of it that a sensor is wrong and no foot.
     """
-    top = mode.mode_shape[int(np.abs(mode.mode_shape).argmax())]
-    shape = (mode.mode_shape / top).real
+    seen = mode.lagging
+    top = seen.mode_shape[int(np.abs(seen.mode_shape).argmax())]
+    shape = (seen.mode_shape / top).real
     inverse = np.linalg.pinv(pair)
     out = np.eye(shape.size) - pair @ inverse
     r = out @ shape
     if np.abs(r).max() > _OTHERWISE:
         return None
-    own = 0.0 if mode.mode_shape_std is None else mode.mode_shape_std / abs(top)
+    own = 0.0 if seen.mode_shape_std is None else seen.mode_shape_std / abs(top)
     return out @ (slopes @ (inverse @ shape)).T, r, np.full(r.size, _SHAPE_REMAINDER**2) + np.square(own)
