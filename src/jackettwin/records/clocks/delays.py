@@ -80,11 +80,15 @@ class BandLines:
     Attributes
     ----------
     unit : (n_channels, n_lines) complex
+    present : (n_channels,)
+        Share of the samples outside faded gaps, where they are zero: the lines of a shorter motion depend on
+        one another, and so many fewer are summed.
     duration_s : float
         Duration of the samples.
     """
 
     unit: ComplexArray
+    present: FloatArray
     duration_s: float
 
 
@@ -303,7 +307,8 @@ def band_lines(y: FloatArray, sample_rate_hz: float) -> BandLines | None:
         return None
     lines = np.array([row[low:high] for row in hann_lines(y)])
     lines /= np.where(np.abs(lines) > 0.0, np.abs(lines), 1.0)
-    return BandLines(lines, of_fast_length(y).shape[1] / sample_rate_hz)
+    present = np.count_nonzero(y, axis=1) / y.shape[1]
+    return BandLines(lines, present, of_fast_length(y).shape[1] / sample_rate_hz)
 
 
 def in_common(lines: BandLines, pairs: IntArray) -> tuple[FloatArray, Iterator[FloatArray]]:
@@ -355,7 +360,7 @@ def long_delays(
     near = np.abs(delay) <= near_s
     for pair, sum_ in enumerate(sums):
         best = int(np.argmax(np.where(far, sum_, 0.0)))
-        if sum_[best] > MIN_LONG_DELAY_SUM:
+        if sum_[best] > MIN_LONG_DELAY_SUM / lines.present[pairs[pair]].min():
             weight[pair] = sum_[best]
             if not near[best] and sum_[best] > LONG_OVER_SHORT * sum_[near].max():
                 out[pair] = delay[best]

@@ -52,7 +52,7 @@ from jackettwin.records.clocks.gain_changes import gain_changes, sign_turns
 from jackettwin.records.clocks.jumps import runs, series_jumps
 from jackettwin.records.clocks.lost_time import lost_time
 from jackettwin.records.clocks.results import ClockJump, LoggerClocks, Strangers
-from jackettwin.records.processing.filters import bridge
+from jackettwin.records.processing.filters import bridge, fade_weight
 from jackettwin.records.quality.faults import is_constant
 
 if TYPE_CHECKING:
@@ -74,6 +74,9 @@ MIN_WINDOWS = 4
 MIN_PRESENT_SHARE = 0.75
 """Smallest share of present samples in a channel whose clock is judged;
 a longer bridged gap resembles another time."""
+
+LEAST_LEFT = 0.5
+"""Smallest mean weight of the samples beside faded gaps; with more gaps these are bridged."""
 
 
 @dataclass(frozen=True)
@@ -103,13 +106,20 @@ def clocks_of(record: Record, slow_free: FloatArray) -> LoggerClocks:
         return LoggerClocks(stop=record.data.shape[1])
     complete = len(rows) == len(slow_free) and bool(np.isfinite(slow_free).all())
     found = logger_clocks(
-        slow_free if complete else np.array([bridge(slow_free[i]) for i in rows]),
+        slow_free if complete else np.array([_without_gaps(slow_free[i]) for i in rows]),
         record.sample_rate_hz,
         velocity=[record.channels[i].quantity == "velocity" for i in rows],
         places=[record.channels[i].node or record.channels[i].height_m for i in rows],
         directions=channel_axes([record.channels[i] for i in rows]),
     )
     return found.of_rows(rows)
+
+
+def _without_gaps(y: FloatArray) -> FloatArray:
+    """Return a channel with its gaps bridged, and faded out beside the long ones if enough is left."""
+    fade = fade_weight(y[None, :])
+    whole = bridge(y)
+    return np.asarray(whole * fade) if fade.mean() > LEAST_LEFT else whole
 
 
 def logger_clocks(

@@ -23,6 +23,11 @@ STOPBAND_DB = 80.0
 """Attenuation beyond the stop edge [dB]; the pass-band ripple is 1e-4."""
 MISSING_WEIGHT = 0.1
 """Share of a low-pass filter's absolute weight that may fall on bridged samples."""
+FADE = 1.0 / 40.0
+"""Length over which samples beside a long gap are faded out, as a share of the record: half a period of
+motion with twenty cycles, the slowest that is compared between channels."""
+SHORT_GAP = 1.0 / 2000.0
+"""Longest gap that is bridged instead, as a share of the record: a hundredth of that period."""
 
 
 def remove_line(y: FloatArray) -> FloatArray:
@@ -139,6 +144,42 @@ def _long_gaps(missing: BoolArray, *, shortest: int) -> BoolArray:
     padded = np.pad(missing, ((0, 0), (shortest, shortest)), constant_values=False)
     opened: BoolArray = ndimage.binary_opening(padded, structure=line)
     return opened[:, shortest:-shortest]
+
+
+def fade_weight(y: FloatArray) -> FloatArray:
+    """Return the weight of every sample, (n_samples,): 0 in long gaps of any row, rising to 1 beside them.
+
+    The line that joins the ends of a long gap is slow motion, and the corners at both ends are pulses: in
+    records with a gap in common, the same pulses in every channel, the length of the gap apart.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        NaN marks a missing sample; a row without any counts as one without gaps.
+
+    Examples
+    --------
+    >>> y = np.ones((1, 400))
+    >>> y[0, 100:140] = np.nan
+    >>> fade_weight(y)[[0, 94, 99, 100, 139, 140, 145, 399]].round(2).tolist()
+    [1.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.5, 1.0]
+    """
+    n = y.shape[1]
+    weight = np.ones(n)
+    reach = int(FADE * n)
+    rise = np.sin(0.5 * np.pi * np.arange(reach) / max(reach, 1)) ** 2
+    for row in y:
+        missing = ~np.isfinite(row)
+        if not missing.any() or missing.all():
+            continue
+        ends = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]).astype(np.int8)))
+        for start, end in ends.reshape(-1, 2):
+            if end - start <= SHORT_GAP * n:
+                continue
+            weight[start:end] = 0.0
+            for beside in (weight[max(start - reach, 0) : start][::-1], weight[end : end + reach]):
+                np.minimum(beside, rise[: len(beside)], out=beside)
+    return weight
 
 
 def bridge(y: FloatArray) -> FloatArray:

@@ -71,6 +71,10 @@ def quantiser_step(y: FloatArray) -> float:
     return float(np.min(np.diff(levels))) if told else 0.0
 
 
+STRAIGHT = 4.0 * float(np.finfo(np.float32).eps)
+"""Largest bend of a line over its samples: three samples of single precision, the middle one twice."""
+
+
 def runs(mask: BoolArray) -> Int64Array:
     """Return start and length of every run of True.
 
@@ -169,20 +173,29 @@ def clipped(y: FloatArray) -> BoolArray:
 
 
 def stuck(y: FloatArray, shortest: int) -> BoolArray:
-    """Mark runs of one value that are at least ``shortest`` samples and much longer than usual."""
+    """Mark runs on one line that are at least ``shortest`` samples and much longer than usual.
+
+    A line is one value, or where a logger or an export joined the ends of a gap.
+    """
     mask = np.zeros(len(y), dtype=np.bool_)
     if is_constant(y):
         return mask
-    same = np.concatenate([[False], np.diff(y) == 0.0])
-    found = runs(same)
-    if not len(found):
-        return mask
-    # A run of n equal values shows as n − 1 repetitions; values never repeated are runs of one.
-    usual = len(y) / max(len(y) - int(same.sum()), 1)
-    for start, length in found:
-        if length + 1 >= max(shortest, STUCK_RUN_RATIO * usual):
-            mask[start - 1 : start + length] = True
+    # A run of n equal values shows as n − 1 steps of zero, one of n values on a line as n − 2 bends of zero.
+    step = np.diff(y)
+    for straight, others in ((step == 0.0, 1), (_no_bend(y, step), 2)):
+        found = runs(straight)
+        usual = len(y) / max(len(y) - int(straight.sum()), 1)
+        least = max(shortest, STUCK_RUN_RATIO * usual)
+        for start, length in found[found[:, 1] + others >= least]:
+            mask[start : start + length + others] = True
     return mask
+
+
+def _no_bend(y: FloatArray, step: FloatArray) -> BoolArray:
+    """Tell where three samples lie on a line, to the rounding of single precision, (n_samples − 2,)."""
+    size = np.abs(y)
+    bend = np.abs(np.diff(step))
+    return np.asarray(bend <= STRAIGHT * np.maximum(np.maximum(size[2:], size[1:-1]), size[:-2]))
 
 
 def hold_length(y: FloatArray) -> int:

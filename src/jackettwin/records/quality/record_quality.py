@@ -100,7 +100,8 @@ def assess(record: Record, *, thorough: bool = True) -> Quality:
         record = replace(record, data=np.where(unreadable, np.nan, record.data))
     held = [faults.hold_length(row) for row in record.data]
     spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
-    slow_free = _without_slow(record, spikes)
+    frozen = [_frozen(record, i) for i in range(len(record.data))]
+    slow_free = _without_slow(record, [a | b for a, b in zip(spikes, frozen, strict=True)])
     known = clocks_of(record, slow_free) if thorough else LoggerClocks(stop=record.data.shape[1])
     # channels are compared after correction of their clocks
     together = in_step(slow_free, known, record.sample_rate_hz)
@@ -109,7 +110,14 @@ def assess(record: Record, *, thorough: bool = True) -> Quality:
     changed = _changed(record, together) if thorough else {}
     judged = [
         _judge(
-            record, i, held[i], spikes[i], slow_free[i], reversed_channels.get(channel.name), changed.get(i)
+            record,
+            i,
+            held[i],
+            spikes[i],
+            frozen[i],
+            slow_free[i],
+            reversed_channels.get(channel.name),
+            changed.get(i),
         )
         for i, channel in enumerate(record.channels)
     ]
@@ -134,11 +142,23 @@ def shortest_stuck(sample_rate_hz: float) -> int:
     return max(int(STUCK_S * sample_rate_hz), 20)
 
 
-def _without_slow(record: Record, spikes: list[BoolArray]) -> FloatArray:
-    """Return the data without mean and drift; spikes are removed first, as they would hide the drift."""
+def _frozen(record: Record, i: int) -> BoolArray:
+    """Mark the frozen readings of a vibration."""
+    y = record.data[i]
+    if record.channels[i].quantity not in VIBRATIONS:
+        return np.zeros(len(y), dtype=np.bool_)
+    return faults.stuck(y, shortest_stuck(record.sample_rate_hz))
+
+
+def _without_slow(record: Record, spoilt: list[BoolArray]) -> FloatArray:
+    """Return the data without mean and drift.
+
+    Spikes and frozen readings are removed first: the drift would hide behind the one, and the other would be
+    compared with the motion of other channels.
+    """
     data = record.data
-    if any(mask.any() for mask in spikes):
-        data = np.where(spikes, np.nan, data)
+    if any(mask.any() for mask in spoilt):
+        data = np.where(spoilt, np.nan, data)
     return filters.remove_slow(data, DRIFT_CYCLES / max(data.shape[1], 1))
 
 
@@ -154,6 +174,7 @@ def _judge(
     i: int,
     hold: int,
     spikes: BoolArray,
+    frozen: BoolArray,
     slow_free: FloatArray,
     sign: bool | None,
     change: SensorChange | None,
@@ -170,7 +191,7 @@ def _judge(
     held = hold if look else 1
     spikes = spikes if look else none
     clipped = faults.clipped(y) if look else none
-    stuck = faults.stuck(y, shortest_stuck(record.sample_rate_hz)) if look else none
+    stuck = frozen if look else none
     outliers = bool(spikes.mean() > MAX_SPIKE_SHARE) if look else False
     # a frozen reading has been reported already
     change = None if stuck.any() or not look else change

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.records.processing.filters import bridge
+from jackettwin.records.processing.filters import bridge, fade_weight
 from jackettwin.records.processing.spectra import hann_lines
 from jackettwin.records.quality import faults
 
@@ -47,6 +47,8 @@ NOISE_COHERENCY = 0.3
 """Absolute coherency that noise alone reaches in a band."""
 SAME_SIZE = 1.25
 """Largest ratio of the amplitudes of two sensors at one place."""
+LEAST_USED = 0.5
+"""Least mean weight of the samples: with less the few lines of a band are coherent by chance."""
 PARALLEL = 0.98
 """Cosine of the angle above which two channels measure the same motion."""
 
@@ -97,7 +99,11 @@ def parallel_groups(record: Record, y: FloatArray) -> Iterator[ParallelChannels]
         places = [_place(record.channels[i]) for i in rows]
         if all(place is None for place in places):
             continue
-        spectra = windowed_spectra(y[rows] * senses[:, None])
+        own = y[rows] * senses[:, None]
+        fade = fade_weight(own)
+        if fade.mean() < LEAST_USED:
+            continue
+        spectra = _windowed_spectra(own, fade)
         for together in _one_place(places):
             yield ParallelChannels(_together(rows, together, spectra))
         tower = [k for k, place in enumerate(places) if isinstance(place, float)]
@@ -161,16 +167,6 @@ def around(spectra: ComplexArray, peak: float) -> ComplexArray:
     return spectra[:, np.abs(k - peak) <= max(BAND * peak, 3)]
 
 
-def windowed_spectra(y: FloatArray) -> ComplexArray:
-    """Return the transforms of rows under a Hann window, with gaps bridged."""
-    bridged = map(bridge, y)  # one row at a time: copies of a day's channels take memory
-    out: ComplexArray | None = None
-    for i, lines in enumerate(hann_lines(row - row.mean() for row in bridged)):
-        out = np.empty((len(y), len(lines)), dtype=complex) if out is None else out
-        out[i] = lines
-    return np.zeros((0, 0), dtype=complex) if out is None else out
-
-
 def against_majority(coherency: FloatArray) -> tuple[list[int], bool]:
     """Return the rows in counterphase with the others, and whether that is certain.
 
@@ -209,6 +205,14 @@ def _parallel(record: Record, y: FloatArray) -> Iterator[tuple[list[int], FloatA
         left = [i for i in left if i not in rows]
         if len(rows) > 1:
             yield rows, np.sign([along[i] for i in rows])
+
+
+def _windowed_spectra(y: FloatArray, fade: FloatArray) -> ComplexArray:
+    """Return the transforms of rows under a Hann window times ``fade``, with gaps bridged."""
+    share = fade / fade.sum()
+    bridged = map(bridge, y)  # one row at a time: copies of a day's channels take memory
+    lines = [own for own in hann_lines((row - row @ share) * fade for row in bridged)]
+    return np.array(lines)
 
 
 def _place(channel: Channel) -> str | float | None:
