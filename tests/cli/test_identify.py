@@ -144,6 +144,15 @@ def test_a_fault_of_the_whole_record_is_said_once(capsys: pytest.CaptureFixture[
     assert "0.3200 Hz is doubtful: the record's quality, below" in said
 
 
+def test_words_that_cannot_be_read_are_refused_in_json_too() -> None:
+    """Those of a command, whatever stands before --json, and a command that does not exist."""
+    for words in (("--min-share", "much", "--json"), ("--json",), ("--json", "--no-such-option")):
+        code, text, err = run(*words)
+        error = json.loads(text)["error"]
+        assert code == 2 and error["problem"] == error["message"] in err
+    assert run("--no-such-option")[1] == ""
+
+
 def test_a_report_under_another_name_than_that_of_a_page_is_refused(tmp_path: Path) -> None:
     page = tmp_path / "modes.txt"
     code, _, err = run(str(RECORDS / "pile_U12_s301.parquet"), "--report", str(page))

@@ -25,7 +25,6 @@ from jackettwin.updating import (
     joint,
     misfit,
     objection,
-    shared_errors,
     support_model,
 )
 from jackettwin.updating.budget import SOURCES, budget_of_draws, damping_budget
@@ -470,23 +469,3 @@ def test_a_suspect_is_judged_without_the_tolerance_for_it(model: SupportModel, e
     for asked_of, name in (((open_, law), "law"), ((open_,), "loss_growth")):
         (one,) = _explanations([(direction, effect) for direction in asked_of], np.eye(2), r)
         assert one.tolerance.name == name and one.size == pytest.approx(3.0)
-
-
-def test_ten_turbines_know_their_tower_better_than_one(
-    model: SupportModel,
-    errors: ErrorModel,
-) -> None:
-    """Towers drawn 2 % too soft: one twin leaves the tower open, ten of them on other ground know it."""
-    n, rng, problems, z = 10, np.random.default_rng(3), {}, {}
-    true = model_of(tower=1.02)
-    for i in range(n):
-        theta = THETA * np.exp(rng.uniform(-0.7, 0.7, 2))
-        problems[f"t{i}"] = problem_of(model, targets(true.predict(theta, MODES).poles), errors)
-        z[f"t{i}"] = np.log(theta)
-    alone = shared_errors({"t0": problems["t0"]}, z, {"tower"})["tower"]
-    farm = shared_errors(problems, z, {"tower"})["tower"]
-    assert farm[1] < 0.6 * alone[1]
-    # two of its standard deviations, to first order; within two of what is left
-    assert abs(farm[0] - 2.0) < 2.0 * farm[1]
-    assert set(shared_errors(problems, z, {"tower", "f1"})) == {"tower", "f1"}
-    assert shared_errors(problems, z, set()) == {}

@@ -106,6 +106,11 @@ class Commands(click.Group):
         self.groups = groups
         self.summaries = {name: text for group in groups.values() for name, text in group.items()}
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Remember whether JSON is asked for, also of a command whose own words cannot be read."""
+        ctx.meta[_JSON] = "--json" in args
+        return super().parse_args(ctx, args)
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands."""
         return list(self.summaries)
@@ -148,7 +153,10 @@ class Commands(click.Group):
         except click.Abort:
             messages.print("stopped: nothing was changed")
             ctx.exit(INTERRUPTED)
-        except (click.ClickException, click.exceptions.Exit):
+        except click.exceptions.Exit:
+            raise
+        except click.ClickException as error:  # click prints its message itself
+            _document_failure("error", error.format_message(), ctx)
             raise
         except Exception as error:
             if ctx.params.get("traceback"):
@@ -165,10 +173,14 @@ _JSON = "jackettwin.json"
 def _failed(kind: str, what: str, ctx: click.Context, error: InputError | None = None) -> None:
     """Print a message, and where JSON was asked for a document of it with the parts of bad input."""
     messages.print(f"[bold red]{kind}:[/] {plain(what)}", soft_wrap=True)
+    _document_failure(kind, what, ctx, error)
+
+
+def _document_failure(kind: str, what: str, ctx: click.Context, error: InputError | None = None) -> None:
     if ctx.meta.get(_JSON):
         parts = ("problem", "file", "field", "value", "allowed", "remedy")
-        found = {name: getattr(error, name, None) for name in parts}
-        said = {name: None if part is None else str(part) for name, part in found.items()}
+        found = {"problem": what} if error is None else {name: getattr(error, name) for name in parts}
+        said = {name: None if (part := found.get(name)) is None else str(part) for name in parts}
         print_json({"error": {"kind": kind, "message": what, **said}})
 
 
@@ -311,12 +323,7 @@ def with_omissions(document: object, command: str) -> object:
     return {**document, "left_out": document.get("left_out", omitted_by(command))}
 
 
-def _remembered(ctx: click.Context, _: click.Parameter, value: bool) -> bool:
-    ctx.meta[_JSON] = value
-    return value
-
-
-json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.", callback=_remembered)
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
 def answers(function: Callable[P, Reply]) -> Callable[P, None]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from jackettwin.files import KeptInFolder
     from jackettwin.identification import Examination, IdentificationSettings, Pick
     from jackettwin.progress import Progress
-    from jackettwin.records import FileDefaults
+    from jackettwin.records import FileDefaults, Record
 
 
 class _Method(click.types.StringParamType):
@@ -276,9 +276,15 @@ def _setups(
     files: Sequence[Path], settings: IdentificationSettings, defaults: FileDefaults
 ) -> dict[str, Any]:
     from jackettwin.identification import preger_document
+    from jackettwin.records import read_record
 
     with progress(len(files) + 1, "identify") as step:
-        return preger_document(files, settings, defaults, step)
+
+        def read(path: Path) -> Record:
+            step(f"read {path.name}")
+            return read_record(path, defaults)
+
+        return preger_document(map(read, files), settings, step)
 
 
 def _refuse_preger(n_files: int, options: Mapping[str, object]) -> None:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,7 +39,7 @@ from jackettwin.identification.subspace.stabilisation import stabilisation
 from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.processes import on_one_blas_thread
 from jackettwin.progress import SILENT, Progress
-from jackettwin.records import Channel, FileDefaults, Record, read_record, with_conditions
+from jackettwin.records import Channel, Record, with_conditions
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings, Stabilisation
@@ -83,28 +82,24 @@ class _Setups:
 
 
 def preger_document(
-    files: Sequence[Path],
-    settings: IdentificationSettings,
-    defaults: FileDefaults | None = None,
-    progress: Progress = SILENT,
+    sources: Iterable[Record], settings: IdentificationSettings, progress: Progress = SILENT
 ) -> dict[str, Any]:
     """Return the result document of setups that are identified together.
 
-    Each is read, assessed and repaired as a single record is.
+    Each is assessed and repaired as a single record is, before the next one is asked for.
 
     Raises
     ------
     InputError
-        As ``identify_setups``; or if a file cannot be read.
+        As ``identify_setups``.
     """
     records, told = [], []
     doubts: list[Finding] = []
     own: list[Finding] = []
-    for path in files:
-        progress(f"read {path.name}")
-        with located(file=path):
-            source = with_conditions(read_record(path, defaults))
-            ready, quality, findings, against = made_ready(source, thorough=not settings.quick)
+    for source in sources:
+        with located(file=source.name):
+            known = with_conditions(source)
+            ready, quality, findings, against = made_ready(known, thorough=not settings.quick)
         records.append(ready)
         doubts += against
         told += [{"record": ready.name, **finding.document} for finding in quality.findings]

@@ -63,11 +63,6 @@ from .model_error.mode_checks import (
     order_checks as order_checks,
     shape_checks as shape_checks,
 )
-from .model_error.turbines import (
-    StackedErrors as StackedErrors,
-    shared_errors as shared_errors,
-    stacked as stacked,
-)
 from .nuisance_parameters import (
     DASHPOTS as DASHPOTS,
     NuisanceParameter as NuisanceParameter,
