@@ -13,7 +13,7 @@ from jackettwin.soil import Prony, family
 from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, single, support_model
 from jackettwin.updating.search.descent import descend
-from jackettwin.updating.search.path import SearchPath
+from jackettwin.updating.search.path import PathEvaluator
 from jackettwin.updating.search.shorter_law import ShorterLaws, shorter_law
 from jackettwin.updating.search.solutions import search
 
@@ -143,7 +143,7 @@ def test_what_is_left_of_two_branches_is_the_zener_law_behind_them(oc4: Assembly
     targets = planted(oc4, "zener", [5e8, 3e8, 3e8])  # k1 = 0.6 k0, τ = 1 s
     problem = single(model(oc4, "prony-2"), Residuals(targets, relative=True))
     end = descend(problem, np.log([5e8, *spare]))
-    left = shorter_law(SearchPath(problem), end)
+    left = shorter_law(PathEvaluator(problem), end)
     assert end.settled and left is not None
     np.testing.assert_allclose(np.exp(left[:3]), [5e8, 0.6, 1.0], rtol=1e-4)
     assert np.exp(left[3]) < 1e-9
@@ -152,7 +152,7 @@ def test_what_is_left_of_two_branches_is_the_zener_law_behind_them(oc4: Assembly
 def test_nothing_is_left_out_of_a_law_whose_branches_the_data_need(oc4: Assembly) -> None:
     theta = [5e8, 0.2, 0.5, 0.3, 8.0]
     problem = single(model(oc4, "prony-2"), Residuals(planted(oc4, "prony-2", theta), relative=True))
-    assert shorter_law(SearchPath(problem), descend(problem, np.log(theta) + 0.1)) is None
+    assert shorter_law(PathEvaluator(problem), descend(problem, np.log(theta) + 0.1)) is None
 
 
 def test_two_arms_of_a_valley_are_one_solution_however_poorly_weak_branches_are_known(oc4: Assembly) -> None:

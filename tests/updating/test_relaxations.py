@@ -14,7 +14,7 @@ from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.posterior.predictive import predict_quantities
 from jackettwin.updating.problem import NEVER
-from jackettwin.updating.search.path import SearchPath, constrained
+from jackettwin.updating.search.path import PathEvaluator, constrained
 
 TRUTH, MODES = np.array([2.62e9, 1e9, 3e9]), (1, 2, 4)
 WIDE = {"k0": (1e8, 1e11), "c": (1e7, 1e12), "k1": (1e8, 1e11)}
@@ -63,8 +63,8 @@ def test_a_real_pole_identifies_the_relaxation_time(problem: Problem, zener: Sup
     """Frequencies and ζ1 let the dashpot go tenfold, the others following; the pole does not."""
     without = joint(zener, {"": (measured(zener, TRUTH), {})})
     tenfold = np.log(10.0 * TRUTH[1])
-    assert constrained(SearchPath(without), np.log(TRUTH), 1, tenfold)[1] < 2.0
-    assert constrained(SearchPath(problem), np.log(TRUTH), 1, tenfold)[1] > 25.0
+    assert constrained(PathEvaluator(without), np.log(TRUTH), 1, tenfold)[1] < 2.0
+    assert constrained(PathEvaluator(problem), np.log(TRUTH), 1, tenfold)[1] > 25.0
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.descent import End
-from jackettwin.updating.search.path import SearchPath, constrained, held_minimum
+from jackettwin.updating.search.path import PathEvaluator, constrained, held_minimum
 from jackettwin.updating.search.shorter_law import ShorterLaws
 
 SAME = 0.02
@@ -75,7 +75,7 @@ def joined(problem: Problem, low: End, high: End) -> tuple[bool, int]:
     allowance, taken = problem.allowance(high.cost), 0
     for j in np.argsort(-span):
         if span[j] > 1e-3:
-            path = SearchPath(problem)
+            path = PathEvaluator(problem)
             there, steps, fell = _walk(path, high, int(j), float(low.z[j]), allowance)
             taken += steps
             if fell or (there is not None and _level(path, there, low.z, high.cost + allowance)):
@@ -84,7 +84,7 @@ def joined(problem: Problem, low: End, high: End) -> tuple[bool, int]:
 
 
 def _walk(
-    path: SearchPath, start: End, j: int, to: float, allowance: float
+    path: PathEvaluator, start: End, j: int, to: float, allowance: float
 ) -> tuple[FloatArray | None, int, bool]:
     """Return the end of a walk along one coordinate, its steps, and whether the cost decreased on the way.
 
@@ -103,7 +103,7 @@ def _walk(
     return here, _STAGES, False
 
 
-def _level(path: SearchPath, start: FloatArray, end: FloatArray, ceiling: float) -> bool:
+def _level(path: PathEvaluator, start: FloatArray, end: FloatArray, ceiling: float) -> bool:
     """Return whether the cost stays below a ceiling on the straight line between two points."""
     between = np.linspace(0.0, 1.0, _STAGES)[1:-1]
     costs = path.problem.costs(start + between[:, None] * (end - start), path.last)
@@ -116,7 +116,7 @@ def extent(problem: Problem, end: End) -> tuple[FloatArray, list[FloatArray]]:
     The second value holds the points reached, for parameters with a wide range.
     """
     points = []
-    path = SearchPath(problem)
+    path = PathEvaluator(problem)
     J, allowance = path(end.z)[1], problem.allowance(end.cost)
     curvature = J.T @ J
     spread = np.full(end.z.size, np.inf)
@@ -132,7 +132,7 @@ def extent(problem: Problem, end: End) -> tuple[FloatArray, list[FloatArray]]:
     return np.clip(sides, problem.prior.low[:, None], problem.prior.high[:, None]), points
 
 
-def _reach(path: SearchPath, end: End, j: int, limit: float, allowance: float) -> FloatArray:
+def _reach(path: PathEvaluator, end: End, j: int, limit: float, allowance: float) -> FloatArray:
     """Return the point with the farthest value of one ln θ at practically equal cost.
 
     It is sought with the surrogate at the end point, since equal cost implies nearly equal poles; if the cost

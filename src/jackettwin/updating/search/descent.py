@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Found, Problem
 from jackettwin.updating.search.levenberg_marquardt import Rows
-from jackettwin.updating.search.path import SearchPath, Trail, creep, minimum
+from jackettwin.updating.search.path import PathEvaluator, Trail, creep, minimum
 
 _POINT = 0.02
 """Change of ln θ below which a minimum is well determined when the regularisation is removed. In a flat
@@ -54,7 +54,7 @@ def descend(
     :math:`\prod_i (1 + σ²/\|z - z_i\|²)` (deflation, Farrell et al. 2015); the last steps are without this
     factor.
     """
-    path = SearchPath(problem, trail)
+    path = PathEvaluator(problem, trail)
     if known:
         start = creep(path, start, _deflated(path, known), tolerance=1e-3, most=60)
     z = start
@@ -80,7 +80,7 @@ def descend(
 
 def bottom(problem: Problem, start: FloatArray, near: Found) -> FloatArray:
     """Return the approximate nearest minimum, from a start with known modes."""
-    path = SearchPath(problem)
+    path = PathEvaluator(problem)
     path.last = near
     return creep(path, start, path, tolerance=1e-3, most=30)
 
@@ -91,7 +91,7 @@ def settle(problem: Problem, end: End) -> End:
     Data without standard deviations are assumed accurate to 1e-4. If they are fitted far better and determine
     all parameters, the point is not regularised.
     """
-    path = SearchPath(problem)
+    path = PathEvaluator(problem)
     if not _flat(path, end.z):
         return end
     z, _ = minimum(path, end.z, path.pull(end.cost))
@@ -99,7 +99,7 @@ def settle(problem: Problem, end: End) -> End:
     return _judged(problem, free if _resolved(path, free) else z)
 
 
-def _flat(path: SearchPath, z: FloatArray) -> bool:
+def _flat(path: PathEvaluator, z: FloatArray) -> bool:
     """Return whether the cost hardly changes in some direction from bound to bound."""
     J, prior = path(z)[1], path.problem.prior
     if len(J) < z.size:
@@ -108,7 +108,7 @@ def _flat(path: SearchPath, z: FloatArray) -> bool:
     return weakest**2 <= path.problem.negligible
 
 
-def _resolved(path: SearchPath, z: FloatArray) -> bool:
+def _resolved(path: PathEvaluator, z: FloatArray) -> bool:
     """Return whether the data determine all parameters, by Fisher's information at the fit's accuracy."""
     (r, J), prior = path(z), path.problem.prior
     inside = ((z - prior.low > _POINT) & (prior.high - z > _POINT)).all()
@@ -124,7 +124,7 @@ def _resolved(path: SearchPath, z: FloatArray) -> bool:
 def descend_simplex(problem: Problem, start: FloatArray, *, trail: Trail | None = None) -> End:
     """Return the end of the thesis's simplex search (section 8.2), settled only if it is a minimum."""
     fit = minimize(
-        SearchPath(problem, trail).total,
+        PathEvaluator(problem, trail).total,
         start,
         method="Nelder-Mead",
         bounds=list(zip(problem.prior.low, problem.prior.high, strict=True)),
@@ -133,7 +133,7 @@ def descend_simplex(problem: Problem, start: FloatArray, *, trail: Trail | None 
     return replace(_judged(problem, np.asarray(fit.x)), evaluations=int(fit.nfev))
 
 
-def _deflated(path: SearchPath, known: tuple[FloatArray, ...]) -> Rows:
+def _deflated(path: PathEvaluator, known: tuple[FloatArray, ...]) -> Rows:
     """Return residuals and Jacobian multiplied by a factor m that is infinite at known solutions."""
     width = 0.1 * (path.problem.prior.high - path.problem.prior.low)
 

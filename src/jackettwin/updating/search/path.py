@@ -37,7 +37,7 @@ Trail = list[tuple[FloatArray, float]]
 """Points ln θ (d,) of a search and the cost at each, in order of evaluation."""
 
 
-class SearchPath:
+class PathEvaluator:
     """Residuals and Jacobian along one search path; each prediction starts from the previous one.
 
     Attributes
@@ -107,7 +107,7 @@ def unchanged(rows: Rows) -> Rows:
 
 
 def creep(
-    path: SearchPath,
+    path: PathEvaluator,
     start: FloatArray,
     rows: Rows,
     *,
@@ -145,7 +145,7 @@ def creep(
 
 
 def minimum(
-    path: SearchPath,
+    path: PathEvaluator,
     start: FloatArray,
     pulled: Callable[[Rows], Rows] = unchanged,
     *,
@@ -197,7 +197,7 @@ def minimum(
 
 
 def constrained(
-    path: SearchPath,
+    path: PathEvaluator,
     z: FloatArray,
     parameter: int,
     value: float,

@@ -8,7 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Problem
-from jackettwin.updating.search.path import SearchPath, constrained
+from jackettwin.updating.search.path import PathEvaluator, constrained
 
 _REFINEMENTS = 4
 _NEAR, _STEP = 8.0, 2.0
@@ -41,7 +41,7 @@ def profile(problem: Problem, theta: FloatArray, parameter: int, *, n: int = 11)
     centre = int(np.searchsorted(grid, z[parameter]))
     points, cost = np.empty((grid.size, z.size)), np.empty(grid.size)
     for side in (range(centre, grid.size), range(centre - 1, -1, -1)):
-        path, here = SearchPath(problem), z
+        path, here = PathEvaluator(problem), z
         for i in side:
             here, cost[i] = constrained(path, here, parameter, float(grid[i]))
             points[i] = here
@@ -51,6 +51,6 @@ def profile(problem: Problem, theta: FloatArray, parameter: int, *, n: int = 11)
         for i in steep[::-1]:
             start = points[i] if cost[i] < cost[i + 1] else points[i + 1]
             between = 0.5 * (points[i, parameter] + points[i + 1, parameter])
-            here, value = constrained(SearchPath(problem), start, parameter, float(between))
+            here, value = constrained(PathEvaluator(problem), start, parameter, float(between))
             points, cost = np.insert(points, i + 1, here, axis=0), np.insert(cost, i + 1, value)
     return Profile(problem.parameters[parameter].name, np.exp(points[:, parameter]), cost)

@@ -16,7 +16,7 @@ from jackettwin.soil import ABSENT
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.descent import End
 from jackettwin.updating.search.levenberg_marquardt import Rows, damped_least_squares
-from jackettwin.updating.search.path import SearchPath, held_minimum, minimum, squares
+from jackettwin.updating.search.path import PathEvaluator, held_minimum, minimum, squares
 
 _NOTHING = float(np.log(ABSENT))
 _DEEP = 0.01
@@ -39,7 +39,7 @@ class ShorterLaws:
     """
 
     def __init__(self, problem: Problem) -> None:
-        self._path = SearchPath(problem)
+        self._path = PathEvaluator(problem)
         self._known: dict[int, tuple[End, FloatArray | None]] = {}
 
     def __call__(self, end: End) -> FloatArray | None:
@@ -67,12 +67,12 @@ class ShorterLaws:
         return self._path.total(there)
 
 
-def shorter_law(path: SearchPath, end: End) -> FloatArray | None:
+def shorter_law(path: PathEvaluator, end: End) -> FloatArray | None:
     """Return the shorter law of an end point, without its redundant branches.
 
     Parameters
     ----------
-    path : SearchPath
+    path : PathEvaluator
         Whose last modes are those of a point with nearly the same poles, if there is one.
 
     Returns
@@ -129,7 +129,7 @@ def _columns(problem: Problem) -> list[IntArray]:
 
 
 def _without(
-    path: SearchPath,
+    path: PathEvaluator,
     near: Rows,
     z: FloatArray,
     j: int,
@@ -160,7 +160,7 @@ def _without(
     return there
 
 
-def _level(path: SearchPath, points: FloatArray, ceiling: float) -> bool:
+def _level(path: PathEvaluator, points: FloatArray, ceiling: float) -> bool:
     return bool((path.problem.costs(points, path.last) <= ceiling).all())
 
 
