@@ -112,7 +112,9 @@ def cramer_rao(
     )
     n = shapes.shape[1]
     none = np.zeros((len(omega), n))
-    data = Periodogram(omega, count, np.zeros((len(omega), n, n), complex), none, none, duration_s)
+    data = Periodogram(
+        omega, count, np.zeros((len(omega), n, n), complex), none, none, duration_s, duration_s
+    )
     matrix = expected(data, p).matrix
     power = np.einsum("kaa->ka", matrix).real
     exact = replace(data, density=matrix, floor=power, dither=power)

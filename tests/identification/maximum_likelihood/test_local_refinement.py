@@ -98,7 +98,7 @@ def third_pair():
     start = group_starts(lines, 600.0, f[4:], zeta[4:])
     count = np.diff(np.append(start, len(lines))).astype(float)
     omega, none = 2.0 * np.pi * np.add.reduceat(lines, start) / count, np.zeros((len(start), 8))
-    blank = Periodogram(omega, count, np.zeros((len(start), 8, 8), complex), none, none, 600.0)
+    blank = Periodogram(omega, count, np.zeros((len(start), 8, 8), complex), none, none, 600.0, 600.0)
     pairs = coherent_pairs(np.log(f))
     moved = shapes[pairs[:, 0]] * shapes[pairs[:, 1]].conj()
     size = np.linalg.norm(shapes, axis=1)

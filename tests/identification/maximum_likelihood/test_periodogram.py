@@ -35,6 +35,22 @@ def test_displacements_count_as_accelerations(rng):
     np.testing.assert_allclose(ratio, plain.omega[single] ** 4, rtol=1e-9)
 
 
+def test_parts_beside_a_gap_have_their_own_lines(rng):
+    """Two times are independent: the likelihood is the product of those of the parts."""
+    y = rng.standard_normal((2, 9000))
+    parts = [y[:, :3500].copy(), y[:, 4100:].copy()]
+    y[:, 3500:4100] = np.nan
+    both, first, second = (
+        periodogram(part, 10.0, (0.2, 4.0), modes=MODES, derivatives=[0, 0]) for part in (y, *parts)
+    )
+    assert both.duration_s == first.duration_s + second.duration_s == 840.0
+    for one in (first, second):
+        own = both.length_s == one.duration_s
+        for name in ("omega", "count", "density", "dither", "variance"):
+            np.testing.assert_array_equal(getattr(both, name)[own], getattr(one, name))
+    assert len(both.omega) == len(first.omega) + len(second.omega)
+
+
 def test_missing_samples_keep_the_level(rng):
     y = rng.standard_normal((1, 40_000))
     y[0, ::5] = np.nan

@@ -35,7 +35,9 @@ def test_expected_periodogram_of_coloured_forces(tower, slope):
     lines = np.arange(90, 1800, 7)
     n_channels = system.mode_shapes.shape[1]
     none = np.zeros((len(lines), n_channels))
-    data = Periodogram(2.0 * np.pi * f[lines], np.ones(len(lines)), matrix[lines], none, none, DURATION)
+    data = Periodogram(
+        2.0 * np.pi * f[lines], np.ones(len(lines)), matrix[lines], none, none, DURATION, DURATION
+    )
     root = np.sqrt(0.5 * np.diag(system.force) * system.frequency_hz**-slope)
     pairs = coherent_pairs(np.log(system.frequency_hz))
     coherence = system.force / np.sqrt(np.outer(np.diag(system.force), np.diag(system.force)))

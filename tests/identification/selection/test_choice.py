@@ -52,10 +52,25 @@ def test_units_of_a_channel_change_nothing_but_its_shape(tower, rng):
 def test_remaining_gaps_leave_the_modes_unrefined_and_say_so(tower, rng):
     record = simulate(tower, rng, sample_rate_hz=5.0)
     data = record.data.copy()
-    data[:, 1400:1480] = np.nan
+    for start in range(200, 3000, 300):
+        data[:, start : start + 30] = np.nan
     result = identify(replace(record, data=data))
     assert any("gaps remain" in text for text in result.warnings)
     assert {mode.method for mode in result.modes} == {"ssi-cov"}
+
+
+def test_a_gap_in_the_middle_costs_its_length_alone(tower, rng):
+    """Both sides are fitted together: standard deviations grow as by a record that much shorter."""
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    data = record.data.copy()
+    data[:, 1300:1900] = np.nan
+    whole, gappy = identify(record).modes, identify(replace(record, data=data)).modes
+    for mode, other, zeta in zip(whole, gappy, tower.damping_ratio, strict=True):
+        assert mode.method == other.method == "maximum likelihood"
+        std, shorter = (np.sqrt(np.diag(m.log_covariance)) for m in (mode, other))
+        # 20 % of the record; the estimated spectra differ, and with them the bounds
+        assert np.mean(shorter / std) == pytest.approx(np.sqrt(1.0 / 0.8), rel=0.25)
+        assert abs(np.log(other.damping_ratio / zeta)) < 2.5 * shorter[1]
 
 
 def test_modes_are_refined_on_a_stretch_that_is_most_of_the_record(tower, rng):
@@ -76,7 +91,8 @@ def test_damping_of_a_close_pair_that_no_fit_describes_is_known_less_well(rng):
     pair = ModalSystem(np.array([0.3, 0.302, 1.0]), np.full(3, 0.01), np.eye(3), np.diag([1.0, 1.0, 4.0]))
     record = simulate(pair, rng, sample_rate_hz=5.0, duration_s=1800.0)
     data = record.data.copy()
-    data[:, 4400:4500] = np.nan  # too long a gap to fit a spectrum, and no stretch of most of the record
+    for start in range(200, 9000, 300):  # no stretch of twenty cycles is left to fit
+        data[:, start : start + 10] = np.nan
     record = replace(record, data=data)
     plain = identify(record, IdentificationSettings(refine=False)).modes
     modes = identify(record).modes

@@ -30,7 +30,11 @@ def poles(frequency_hz: FloatArray, damping_ratio: FloatArray) -> ComplexArray:
 
 
 def kernel(
-    omega: FloatArray, variance: FloatArray, duration_s: float, first: ComplexArray, second: ComplexArray
+    omega: FloatArray,
+    variance: FloatArray,
+    duration_s: FloatArray | float,
+    first: ComplexArray,
+    second: ComplexArray,
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the expected cross periodogram of modes under unit forces: the response at ω and the leakage.
 
@@ -38,6 +42,7 @@ def kernel(
     ----------
     omega, variance : (n_omega,) [rad/s], [rad²/s²]
         Mean Fourier frequency of every group of lines, and their variance about it.
+    duration_s : float or (n_omega,)
     first, second : (n_first,), (n_second,) complex
         Poles of the two sets of modes, upper half plane.
 
@@ -53,7 +58,11 @@ def kernel(
 
 
 def _with_poles_of(
-    omega: FloatArray, variance: FloatArray, duration_s: float, first: ComplexArray, second: ComplexArray
+    omega: FloatArray,
+    variance: FloatArray,
+    duration_s: FloatArray | float,
+    first: ComplexArray,
+    second: ComplexArray,
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the parts of the partial fractions that have the poles of the first set."""
     n = len(first)
@@ -65,13 +74,14 @@ def _with_poles_of(
 
 
 def fejer(
-    omega: FloatArray, variance: FloatArray, duration_s: float, p: ComplexArray
+    omega: FloatArray, variance: FloatArray, duration_s: FloatArray | float, p: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the means of F_p and L_p over groups of lines, (n_omega, n_poles) each."""
     inverse = 1.0 / (1j * omega[:, None] - p)
     square = inverse**2
     curvature = variance[:, None] * square
-    leak = np.expm1(p * duration_s) / duration_s
+    length = np.reshape(duration_s, (-1, 1))
+    leak = np.expm1(p * length) / length
     return np.asarray(inverse * (1.0 - curvature)), np.asarray(leak * square * (1.0 - 3.0 * curvature))
 
 

@@ -28,6 +28,9 @@ fit overstates how accurately the peaks determine the ratios between channels.""
 MEDIAN_SHARE_OF_BAND = 0.25
 """Width of the running median, as a share of the frequency it is taken at."""
 
+MIN_CYCLES = 20.0
+"""Fewest cycles of the lower end of the band in a part of a record that has its own lines."""
+
 
 @dataclass(frozen=True)
 class Periodogram:
@@ -46,6 +49,9 @@ class Periodogram:
     dither : (n_groups, n_channels)
         Power added to the diagonal of model **and** data: a share of the floor.
     duration_s : float
+        Of all stretches together.
+    length_s : (n_groups,) or float
+        Duration of the stretch from which a group of lines is.
     """
 
     omega: FloatArray
@@ -54,6 +60,7 @@ class Periodogram:
     floor: FloatArray
     dither: FloatArray
     duration_s: float
+    length_s: FloatArray | float
 
     @cached_property
     def dithered(self) -> ComplexArray:
@@ -66,7 +73,7 @@ class Periodogram:
     @property
     def variance(self) -> FloatArray:
         """Variance of the lines of each group about their mean [rad²/s²], (n_groups,)."""
-        return np.asarray((self.count**2 - 1.0) / 12.0 * (2.0 * np.pi / self.duration_s) ** 2)
+        return np.asarray((self.count**2 - 1.0) / 12.0 * (2.0 * np.pi / self.length_s) ** 2)
 
     @property
     def log_position(self) -> FloatArray:
@@ -90,7 +97,9 @@ def periodogram(
     Parameters
     ----------
     y : (n_channels, n_samples)
-        Zero-mean samples; a missing one (NaN) counts as zero and the power is corrected for it.
+        Zero-mean samples; a missing one (NaN) counts as zero and the power is corrected for it. Where all
+        channels miss it between parts of twenty cycles or more, each part has its own lines: what is of two
+        times is independent.
     modes : (frequency_hz, damping_ratio)
         Approximate modal parameters; where they make the spectrum curve, lines are not grouped.
     derivatives : (n_channels,) int
@@ -100,6 +109,51 @@ def periodogram(
         Dither as a share of the local median; by default one that falls with frequency. A small dither keeps
         spectral matrices regular where a record has little noise; a large one leaves only the peaks visible.
     """
+    parts = _parts(y, sample_rate_hz, band_hz[0])
+    each = [
+        _of_stretch(
+            y[:, part],
+            sample_rate_hz,
+            band_hz,
+            modes=modes,
+            derivatives=derivatives,
+            avoid_hz=avoid_hz,
+            dither_share=dither_share,
+        )
+        for part in parts
+    ]
+    if len(each) == 1:
+        return each[0]
+    order = np.argsort(np.concatenate([one.omega for one in each]), kind="stable")
+    omega, count, density, floor, dither, length = (
+        np.concatenate([getattr(one, name) for one in each])[order]
+        for name in ("omega", "count", "density", "floor", "dither", "length_s")
+    )
+    duration = sum(one.duration_s for one in each)
+    return Periodogram(omega, count, density, floor, dither, duration, length)
+
+
+def _parts(y: FloatArray, sample_rate_hz: float, low_hz: float) -> list[slice]:
+    """Return the parts of a record between the gaps that all channels have, or the whole if one is short."""
+    there = np.isfinite(y).any(axis=0)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], there, [False]]).astype(np.int8)))
+    parts = [slice(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+    shortest = min((part.stop - part.start for part in parts), default=0)
+    long_enough = shortest >= MIN_CYCLES / low_hz * sample_rate_hz
+    return parts if long_enough else [slice(0, y.shape[1])]
+
+
+def _of_stretch(
+    y: FloatArray,
+    sample_rate_hz: float,
+    band_hz: tuple[float, float],
+    *,
+    modes: tuple[FloatArray, FloatArray],
+    derivatives: Sequence[int],
+    avoid_hz: Sequence[tuple[float, float]],
+    dither_share: float | None,
+) -> Periodogram:
+    """Return the grouped periodogram of one stretch, with the arguments of ``periodogram``."""
     n_channels, n_samples = y.shape
     duration = n_samples / sample_rate_hz
     first, last = int(np.ceil(band_hz[0] * duration)), int(np.floor(band_hz[1] * duration))
@@ -132,7 +186,8 @@ def periodogram(
         floor_share = (DITHER_SHARE * np.minimum(DITHER_LINES / lines, 1.0))[:, None]
     else:
         floor_share = np.full((1, 1), dither_share)
-    return Periodogram(omega, count, density, floor, floor_share * floor, duration)
+    length = np.full(len(omega), duration)
+    return Periodogram(omega, count, density, floor, floor_share * floor, duration, length)
 
 
 def group_starts(

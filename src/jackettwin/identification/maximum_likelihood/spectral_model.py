@@ -83,7 +83,7 @@ def expected(data: Periodogram, p: Parameters, share: float = 1.0) -> Expected:
 def response_power(data: Periodogram, f: float, zeta: float) -> FloatArray:
     """Return the expected periodogram of one mode under a white force of density 1, (n_groups,)."""
     lam = poles(np.array([f]), np.array([zeta]))
-    steady, leaked = kernel(data.omega, data.variance, data.duration_s, lam, lam)
+    steady, leaked = kernel(data.omega, data.variance, data.length_s, lam, lam)
     return np.asarray((steady + leaked)[:, 0, 0].real)
 
 
@@ -229,7 +229,7 @@ def _kernel(
 
     A background has no peak and therefore no leakage, though its force may be large far below the band.
     """
-    steady, leaked = kernel(data.omega, data.variance, data.duration_s, first, second)
+    steady, leaked = kernel(data.omega, data.variance, data.length_s, first, second)
     leaked[:, np.arange(len(first)) % len(second) < p.background] = 0.0
     leaked[:, :, : p.background] = 0.0
     return steady, leaked

@@ -13,6 +13,9 @@ otherwise, or if all channels are missing together, a gap remains.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
+
 import numpy as np
 from scipy import linalg, ndimage
 
@@ -26,10 +29,11 @@ MIN_EXPLAINED_SHARE = 0.9
 """Share of a channel's variance the others must explain."""
 MAX_MISSING_SHARE = 0.01
 """Largest share of missing samples in a channel that count as zeros in a periodogram."""
-LEAST_STRETCH = 0.75
-"""Share of the record that a stretch without gaps must have to stand for it: what is estimated from it
-scatters 1.15 times as much as from the whole. Fits to half a record are no sharper than subspace estimates of
-all of it: in ten minutes with 8 % missing, 0.20 and 0.23 in ln ζ of a mode of 1 %."""
+LEAST_USED = 0.75
+"""Share of the instants at which there is any sample that stretches without gaps must have to stand for a
+record: what is estimated from them scatters 1.15 times as much as from the whole. Fits to half of what there
+is are no sharper than subspace estimates of all of it: in ten minutes with 8 % missing, 0.20 and 0.23 in ln ζ
+of a mode of 1 %."""
 RIDGE = 1e-9
 """Regularisation as a share of the variance, needed if sensors repeat each other exactly."""
 
@@ -74,33 +78,38 @@ def fill(y: FloatArray) -> FloatArray:
     return out
 
 
-def without_gaps(y: FloatArray) -> FloatArray | None:
-    """Return the samples whose spectrum is that of the motion: all if few are missing, a stretch, or None.
+def stretches(y: FloatArray, shortest: int) -> tuple[slice, ...]:
+    """Return the parts of a record whose spectra are those of the motion; none if they are too little of it.
+
+    They are the whole record if few samples are missing, else all parts of at least ``shortest`` samples in
+    which none is.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
         NaN marks a missing sample.
-    """
-    few = np.isnan(y).mean(axis=1).max() <= MAX_MISSING_SHARE
-    return y if few else longest_stretch(y)
-
-
-def longest_stretch(y: FloatArray) -> FloatArray | None:
-    """Return the longest stretch (n_channels, n) in which no sample is missing; None if it is too short.
 
     Examples
     --------
     >>> y = np.ones((2, 100))
-    >>> y[0, 10:15] = np.nan
-    >>> longest_stretch(y).shape
-    (2, 85)
+    >>> y[0, 40:45] = np.nan
+    >>> stretches(y, 30)
+    (slice(0, 40, None), slice(45, 100, None))
     """
-    missing = np.flatnonzero(~np.isfinite(y).all(axis=0))
-    ends = np.concatenate([[-1], missing, [y.shape[1]]])
-    most = int(np.argmax(np.diff(ends)))
-    first, end = int(ends[most]) + 1, int(ends[most + 1])
-    return y[:, first:end] if end - first >= LEAST_STRETCH * y.shape[1] else None
+    missing = np.isnan(y)
+    if missing.mean(axis=1).max() <= MAX_MISSING_SHARE:
+        return (slice(0, y.shape[1]),)
+    gaps = np.concatenate([[-1], np.flatnonzero(missing.any(axis=0)), [y.shape[1]]])
+    parts = tuple(slice(int(a) + 1, int(b)) for a, b in pairwise(gaps) if b - a > shortest)
+    used = sum(part.stop - part.start for part in parts)
+    return parts if used >= LEAST_USED * np.count_nonzero(~missing.all(axis=0)) else ()
+
+
+def side_by_side(y: FloatArray, parts: Sequence[slice]) -> FloatArray:
+    """Return the samples of stretches, (n_channels, n), with one missing sample between two of them."""
+    between = np.full((len(y), 1), np.nan)
+    joined = [piece for part in parts for piece in (between, y[:, part])]
+    return np.concatenate(joined[1:], axis=1) if len(parts) > 1 else y[:, parts[0]]
 
 
 def _around(valid: BoolArray, reach: int) -> BoolArray:

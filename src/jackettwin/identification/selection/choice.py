@@ -12,8 +12,9 @@ from jackettwin.findings import Finding
 from jackettwin.identification.estimate import Rejected
 from jackettwin.identification.maximum_likelihood.fits import FitStart, accepted_fits, not_refined
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
+from jackettwin.identification.maximum_likelihood.periodogram import MIN_CYCLES
 from jackettwin.identification.mode_shapes import mac, normalised
-from jackettwin.identification.preparation.gaps import without_gaps
+from jackettwin.identification.preparation.gaps import side_by_side, stretches
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.preparation.whitening import left_to_differentiate
 from jackettwin.identification.selection.candidates import (
@@ -93,13 +94,15 @@ def chosen_modes(
     findings: tuple[Finding, ...] = ()
     modes = {i: judged[i].mode for i, certain in zip(open_to, sure, strict=True) if certain}
     if settings.refine and sure.any():
-        whole = without_gaps(y)
-        if whole is None:
+        shortest = int(MIN_CYCLES / resolved.lowest_frequency_hz * resolved.sample_rate_hz) + 1
+        parts = stretches(y, shortest)
+        if not parts:
             f = np.array([mode.frequency_hz for mode in modes.values()])
             findings = (not_refined(f, "gaps remain in the record"),)
         else:
             start = _start([judged[i].mode for i in open_to], sure, ready, tones, settings)
             band = guarded_band_hz(resolved)
+            whole = side_by_side(y, parts)
             fits, findings = accepted_fits(whole, resolved.sample_rate_hz, band, start)
             for fit in fits:
                 for position in np.flatnonzero(fit.candidates):

@@ -20,7 +20,8 @@ from jackettwin.identification.maximum_likelihood.line_likelihood import (
     over_noise,
 )
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
-from jackettwin.identification.preparation.gaps import without_gaps
+from jackettwin.identification.maximum_likelihood.periodogram import MIN_CYCLES
+from jackettwin.identification.preparation.gaps import stretches
 from jackettwin.identification.selection.neighbours import apart
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.sinusoid import transform
@@ -70,13 +71,14 @@ def with_damping_likelihoods(
     derivatives : (n_channels,)
         Number of time derivatives from a channel's quantity to acceleration.
     """
-    whole = without_gaps(y)
-    if whole is None:
+    lowest_hz = min((mode.frequency_hz for mode in modes), default=np.inf)
+    parts = stretches(y, int(MIN_CYCLES / lowest_hz * sample_rate_hz) + 1)
+    if not parts:
         return tuple(modes)
-    y = whole
-    duration_s = y.shape[1] / sample_rate_hz
+    duration_s = sum(part.stop - part.start for part in parts) / sample_rate_hz
+    order = np.asarray(derivatives)[:, None]
     out = list(modes)
-    lines: ComplexArray | None = None
+    looks: list[tuple[float, ComplexArray]] = []
     for i, mode in enumerate(modes):
         lines_wide = mode.damping_ratio * mode.frequency_hz * duration_s
         lightly = 2.0 * np.pi * lines_wide < MAX_KNOWN
@@ -84,16 +86,19 @@ def with_damping_likelihoods(
             continue
         if any(apart(mode, other) < CLOSE_DISTANCE for other in modes if other is not mode):
             continue
-        if lines is None:
-            lines = transform(y)
-        line = _band(mode.frequency_hz, duration_s, lines.shape[1])
-        own = _filter(modes, i, scale, float(len(line)) / duration_s)
-        if own is None or len(line) < 2 * MIN_HALF_BAND_LINES:
-            continue
-        f = line / duration_s
-        density = lines[:, line] / (sample_rate_hz * np.sqrt(duration_s))
-        x = own @ (density * (2j * np.pi * f) ** np.asarray(derivatives)[:, None])
-        out[i] = _with(mode, damping_log_likelihood(x, mode.frequency_hz, f, duration_s), duration_s)
+        looks = looks or [((p.stop - p.start) / sample_rate_hz, transform(y[:, p])) for p in parts]
+        of_parts = []
+        for length_s, lines in looks:
+            line = _band(mode.frequency_hz, length_s, lines.shape[1])
+            own = _filter(modes, i, scale, float(len(line)) / length_s)
+            if own is None or len(line) < 2 * MIN_HALF_BAND_LINES:
+                break
+            f = line / length_s
+            density = lines[:, line] / (sample_rate_hz * np.sqrt(length_s))
+            x = own @ (density * (2j * np.pi * f) ** order)
+            of_parts.append(damping_log_likelihood(x, mode.frequency_hz, f, length_s))
+        if len(of_parts) == len(looks):
+            out[i] = _with(mode, np.sum(of_parts, axis=0), duration_s)
     return tuple(out)
 
 
