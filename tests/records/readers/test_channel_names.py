@@ -24,6 +24,9 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
         ("a89m_E", X, 89.0, ""),
         ("WTG_TW_ACC_LAT097_FA", X, 97.0, ""),
         ("SG_LAT-003_DEG000", None, -3.0, ""),
+        ("acc_lat_5.5m", None, 5.5, ""),
+        ("acc_lat_2", None, None, ""),  # the second lateral sensor as likely as two metres above LAT
+        ("acc_lat_12", None, None, ""),
         ("tower_bottom_side_side", Y, None, "tower bottom"),
         ("acc-12.5m-y", Y, 12.5, ""),
         ("az", Z, None, ""),

@@ -58,7 +58,13 @@ LAT = "LAT"
 """Lowest astronomical tide, in names like ``LAT097``: a metre or two below mean sea level."""
 
 HEIGHTS: tuple[tuple[str, str], ...] = (
-    (r"(?<![a-z])lat[\s_]?(?P<m>[+\-]?\d{1,3}(?:[.,]\d+)?)(?!\d)", LAT),
+    (r"(?<![a-z])lat(?P<m>\d{2,3})(?![.,]?\d)", LAT),
+    # a small number on its own, as in ``acc_lat_2``, may be that of a lateral sensor
+    (
+        r"(?<![a-z])lat[\s_]?"
+        r"(?P<m>[+\-]?\d{3}|[+\-]\d{1,2}|[+\-]?\d{1,3}[.,]\d+|\d{1,3}(?=\s?m(?![a-z])))(?![.,]?\d)",
+        LAT,
+    ),
     (
         r"(?<![a-z0-9.,])(?:h|z|el|elev|level|height|(?:acc|a)(?=\d))?"
         r"(?P<m>[+\-]?\d{1,3}(?:[.,p]\d+)?)\s?m(?:sl)?(?![a-z0-9/^²])",
