@@ -214,9 +214,9 @@ def stiffer(m: Member, by: float) -> Member:
 
 
 def inside(structure: Structure, m: Member) -> float:
-    """Return the mass of the water that fills a member [kg]."""
+    """Return the mass of the water that fills a member up to the level of the sea [kg]."""
     bore = m.section_start.outer_diameter_m - 2.0 * m.section_start.thickness_m
-    return 0.25 * np.pi * bore**2 * 1025.0 * length(structure, m)
+    return 0.25 * np.pi * bore**2 * 1025.0 * length(structure, m) * submerged(structure, m)
 
 
 def strangers(
