@@ -14,10 +14,11 @@ from math import pi
 
 import numpy as np
 from scipy.optimize import least_squares
+from scipy.special import ndtri
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.change.changed_structures import Happening, Standing, happenings
-from jackettwin.change.ground import UNDESCRIBED, Ground
+from jackettwin.change.ground import UNDESCRIBED, Ground, Loss
 from jackettwin.change.standing_modes import MODES, NEAR, Modes, on_feet
 from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
@@ -158,6 +159,7 @@ def model_causes(
     named, places, stands, best, error = _on_its_feet(
         typical, assembly, labels, frequency_hz, ground.stiffness, rng
     )
+    stands = _with_other_losses(stands, ground.loss_std, np.random.default_rng((78, seed)))
     fit = Modes.of(best, assembly, like=named).modes
     fitted = fit.frequency_hz
     water = mass_per_level(assembly, Coefficients(), Water())
@@ -175,15 +177,16 @@ def model_causes(
         same = stood[0].structure is structure
         return Modes.of_each(stood, assembly if same else standing(stood[0].structure), bases, near)
 
+    def effects(event: Happening, changed: Sequence[Modes]) -> FloatArray:
+        of = zip(bases, changed, loss, strict=True)
+        return np.array([effect(event, base, then, eta, zeta) for base, then, eta in of])
+
     found: list[tuple[str, Cause]] = []
     traceless = ["sensor: gain", "sensor: sign", "sensor: position"]
     kept = np.ones(MODES)
     for event in happenings(typical):
         changed = modes_after(event, stands, bases)
-        draws = np.array([
-            effect(event, base, then, eta, zeta)
-            for base, then, eta in zip(bases, changed, loss, strict=True)
-        ])  # fmt: skip
+        draws = effects(event, changed)
         kept = np.minimum(kept, np.min([one.kept for one in changed], axis=0))
         if np.abs(draws[:, : 2 * MODES] * event.median).max() < _TRACE:
             traceless.append(event.name)
@@ -195,6 +198,10 @@ def model_causes(
                 for often in solved
             ]
             bend = _bend(event.per, draws[0], bends)
+            if event.or_else is not None:
+                other = replace(event, apply=event.or_else)
+                share = _evenly(len(stands), np.random.default_rng((79, seed)))[:, None]
+                draws = draws + share * (effects(other, modes_after(other, stands, bases)) - draws)
             cause = Cause(
                 event.name, draws, sizes, weights, event.unit, bent_at=bend[0], bend=bend[1],
                 misfit=min(_MISSES * error, MISFIT), mixing=mixing(event, bases[0], changed[0], error),
@@ -239,6 +246,20 @@ def _on_its_feet(
     errors = [_model_error(Modes.of(best, assembly, like=one), at, frequency_hz) for one, at in every]
     error, (named, places) = min(zip(errors, every, strict=True), key=lambda pair: pair[0])
     return named, places, stands, best, error
+
+
+def _with_other_losses(stands: Sequence[Standing], std: float, rng: np.random.Generator) -> list[Standing]:
+    """Return draws of the feet with draws of what scour takes of them, independent by component."""
+    z = ndtri(np.stack([_evenly(len(stands), rng) for _ in Loss._fields], axis=1))
+    return [
+        replace(one, scour_loss=Loss(*(np.exp(std * of) * np.array(one.scour_loss))))
+        for one, of in zip(stands, z, strict=True)
+    ]
+
+
+def _evenly(n: int, rng: np.random.Generator) -> FloatArray:
+    """Return equally likely quantiles of a uniform share in random order, (n,), with its mean for any n."""
+    return np.asarray(rng.permutation((np.arange(n) + 0.5) / n))
 
 
 def _seen_best(assembly: Assembly, shapes: FloatArray) -> tuple[str, ...]:

@@ -25,6 +25,9 @@ _SPLASH = (-3.0, 6.0)
 _WEAKENED = "× 30 % off"
 """Unit of a brace's loss: the effect of 30 % less stiffness. Twice the effect is not 60 %,
 since load shifts to the neighbours faster the less stiffness is left."""
+_ON_BLADES = 2.0
+"""Inertia by mass of what lies on blades, as ice does, over that of the whole RNA: the rotor has nearly all
+of the inertia and half of the mass."""
 _GONE = 1e-3
 """Share of a lost member's stiffness and mass that is kept, so that every node remains supported."""
 
@@ -36,7 +39,7 @@ class Standing:
     Attributes
     ----------
     horizontal, vertical : (n_feet,) [N/m]
-    scour_loss : ln of these, and of the rotational stiffness, that a metre of scour takes
+    scour_loss : what a metre of scour takes
     """
 
     structure: Structure
@@ -64,6 +67,7 @@ class Happening:
     unit : of the size
     both_ways : whether it may be negative as well
     damps : damping ratio a unit of the logarithm of frequency lost: friction in a loose joint
+    or_else : the structure after another form of it; what happens is any mean of both
     """
 
     family: str
@@ -75,6 +79,7 @@ class Happening:
     unit: str
     both_ways: bool = False
     damps: float = 0.0
+    or_else: Callable[[Standing], Standing] | None = None
 
 
 PLUGINS = "jackettwin.causes"
@@ -110,9 +115,10 @@ def _scoured_at(foot: int) -> Callable[[Standing], Standing]:
 
 def _scoured(standing: Standing, foot: int | None) -> Standing:
     chosen = np.ones(standing.horizontal.size) if foot is None else np.eye(standing.horizontal.size)[foot]
-    sideways, axially, turning = (np.exp(-loss * chosen) for loss in standing.scour_loss)
-    if feet_in_line(standing.structure):
-        axially = turning
+    loss = standing.scour_loss
+    turns = feet_in_line(standing.structure)
+    of = (loss.free_sideways, loss.free_turning) if turns else (loss.sideways, loss.axially)
+    sideways, axially = (np.exp(-per_m * chosen) for per_m in of)
     return replace(standing, horizontal=standing.horizontal * sideways, vertical=standing.vertical * axially)
 
 
@@ -289,12 +295,26 @@ def _tops(structure: Structure) -> Iterator[Happening]:
     heaviest = max(range(len(structure.masses)), key=lambda i: structure.masses[i].mass_kg)
     mass = structure.masses[heaviest].mass_kg
 
-    def apply(standing: Standing) -> Standing:
-        masses = list(standing.structure.masses)
-        masses[heaviest] = replace(masses[heaviest], mass_kg=masses[heaviest].mass_kg + 0.01 * mass)
-        return replace(standing, structure=standing.structure.with_masses(tuple(masses)))
+    def heavier(turning: float) -> Callable[[Standing], Standing]:
+        """Return more mass on a body, with ``turning`` times its own inertia by mass."""
 
-    yield Happening("mass", "mass of the RNA", apply, 0.01 * mass, 0.01 * mass, 0.8, "kg", both_ways=True)
+        def apply(standing: Standing) -> Standing:
+            masses = list(standing.structure.masses)
+            body = masses[heaviest]
+            more = 1.0 + 0.01 * turning * mass / body.mass_kg
+            xx, yy, zz, xy, xz, yz = more * np.array(body.inertia_kg_m2)
+            masses[heaviest] = replace(
+                body, mass_kg=body.mass_kg + 0.01 * mass, inertia_kg_m2=(xx, yy, zz, xy, xz, yz)
+            )
+            return replace(standing, structure=standing.structure.with_masses(tuple(masses)))
+
+        return apply
+
+    turns = any(structure.masses[heaviest].inertia_kg_m2)
+    yield Happening(
+        "mass", "mass of the RNA", heavier(0.0), 0.01 * mass, 0.01 * mass, 0.8, "kg", both_ways=True,
+        or_else=heavier(_ON_BLADES) if turns else None,
+    )  # fmt: skip
 
 
 def _corroded(standing: Standing) -> Standing:

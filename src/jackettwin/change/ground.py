@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from math import log, pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,8 +21,27 @@ REFERENCE = "jacket15"
 clay over dense sand. A metre of scour takes 21 % of their lateral stiffness and 1 % of the axial one,
 which acts deeper."""
 
-Loss = tuple[float, float, float]
-"""ln of the horizontal, vertical and rotational stiffness that a pile head loses by a metre of scour."""
+
+class Loss(NamedTuple):
+    """ln of the stiffness that a pile's head loses by a metre of scour.
+
+    Attributes
+    ----------
+    sideways, axially : of a head that a jacket keeps upright
+    free_sideways, free_turning : of one that turns freely, as under a monopile: of 1/F_hh and 1/F_rr, F the
+        flexibility. Scour acts most on the coupling of both motions, which K_rr leaves out.
+    """
+
+    sideways: float
+    axially: float
+    free_sideways: float
+    free_turning: float
+
+
+OF_CURVES, OF_OTHER_PILES = 0.2, 0.4
+"""Standard deviations of ln of what scour takes by a pile's own soil curves, and by those of other piles. In
+uniform ground a free head loses ln(1 + 2λ + 2λ² + ⅔λ³) sideways (Hetényi 1946), 0.22 for λ = 0.113 /m, where
+the reference has 0.33."""
 ARM_M = 14.0
 """Arm at which a foot's vertical stiffness resists its rotation where feet stand in a line, as a monopile
 does: 5e11 Nm/rad for 2.5e9 N/m."""
@@ -55,13 +75,18 @@ class Ground:
         """Loss of ln stiffness per metre of scour, by the soil's own curves."""
         return _reference_loss() if self.piles is None else scour_loss(self.piles)
 
+    @property
+    def loss_std(self) -> float:
+        """Standard deviation of ln of each of these."""
+        return OF_OTHER_PILES if self.piles is None else OF_CURVES
+
 
 UNDESCRIBED = Ground()
 """Undescribed ground."""
 
 
 def scour_loss(piles: Foundation) -> Loss:
-    """Return the loss of ln stiffness of a pile head per metre of scour, horizontal, vertical, rotational.
+    """Return the loss of ln stiffness of a pile head per metre of scour.
 
     Raises
     ------
@@ -70,7 +95,10 @@ def scour_loss(piles: Foundation) -> Loss:
     """
     before, after = (one.head() for one in (piles, piles.scoured(1.0)))
     K, L = before.steel + before.soil, after.steel + after.soil
-    return log(K[0, 0] / L[0, 0]), log(K[2, 2] / L[2, 2]), log(K[3, 3] / L[3, 3])
+    F, G = np.linalg.inv(K), np.linalg.inv(L)
+    return Loss(
+        *(log(over[i, i] / under[i, i]) for over, under, i in ((K, L, 0), (K, L, 2), (G, F, 0), (G, F, 3)))
+    )
 
 
 @cache
