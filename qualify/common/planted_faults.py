@@ -219,7 +219,7 @@ FAULTS = (
     *_of("change", rows=(
         ("a change takes back what is like it, not against it", 'way = -1.0 if answer.way == "takes_back"', 'way = 1.0 if answer.way == "takes_back"'),
         ("mixing two modes takes from both of them", "-phi * G[i, j] / before[j]", "phi * G[i, j] / before[j]"),
-        ("scour stiffens the feet", "(np.exp(-loss * chosen) for loss", "(np.exp(loss * chosen) for loss"),
+        ("scour stiffens the feet", "(np.exp(-per_m * chosen) for per_m", "(np.exp(per_m * chosen) for per_m"),
         ("a weakened brace keeps its stiffness", "_scaled(members, 0.7)", "_scaled(members, 1.0)"),
     )),
     *_of("answers", rows=(
