@@ -259,6 +259,7 @@ def _modes(
 
     Rigid-body motions are omitted.
     """
+    from jackettwin.report import words
     from jackettwin.report.view.motions import damped_motion, undamped_motion
     from jackettwin.report.view.quantities import damping_quantity
     from jackettwin.response import UndampedModes, damped_modes, mode_kinds, mode_labels, undamped_modes
@@ -270,7 +271,7 @@ def _modes(
     still = UndampedModes(still.omega[shown], still.shapes[:, shown])
     labels = mode_labels(mode_kinds(assembly, still.shapes, still.frequency_hz))
     motions = [
-        undamped_motion(assembly, f"{k + 1} {label.replace('_', ' ')}", float(f), still.shapes[:, k])
+        undamped_motion(assembly, f"{k + 1}: {words(label)}", float(f), still.shapes[:, k])
         for k, (f, label) in enumerate(zip(still.frequency_hz, labels, strict=True))
     ]
     damped = damped_modes(system, below_hz=1.02 * float(still.frequency_hz[-1]))
@@ -280,7 +281,7 @@ def _modes(
     return motions + [
         damped_motion(
             assembly,
-            f"{k + 1} {label.replace('_', ' ')}",
+            f"{k + 1}: {words(label)}",
             complex(damped.eigenvalues[i]),
             damped.shapes[:, i],
         )

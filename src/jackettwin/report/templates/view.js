@@ -178,6 +178,18 @@ export function show(root, D, asked = new Map(), keep = () => {}) {
     const room = size[0] - pen.measureText(said).width - 4;  // on a phone the name would be cut off
     pen.fillText(said, Math.min(label[0] + 6, room), label[1] + (label[0] + 6 > room ? 18 : 4));
   }
+  function shade(c, share) {  // towards black or, beyond 1, white
+    return c.map(v => share < 1 ? share * v : v + (share - 1) * (255 - v));
+  }
+  function tube(a, b, width, c, fade) {  // the colour of its middle, lit from above left, as a tube is
+    const along = Math.hypot(b[0] - a[0], b[1] - a[1]);
+    if (along < 1 || width < 3) { return css(c, fade); }
+    const side = b[0] - a[0] > a[1] - b[1] ? 1 : -1;  // which of its sides is lit
+    const x = side * 0.5 * width * (b[1] - a[1]) / along, y = -side * 0.5 * width * (b[0] - a[0]) / along;
+    const across = pen.createLinearGradient(a[0] + x, a[1] + y, a[0] - x, a[1] - y);
+    [[0, 0.86], [0.28, 1.3], [0.55, 1], [1, 0.62]].forEach(([at, share]) => across.addColorStop(at, css(shade(c, share), fade)));
+    return across;
+  }
   function member(e, now) {
     const a = screen[D.start[e]], b = screen[D.end[e]], width = Math.max(1.4, D.diameter[e] * scale);
     pen.lineCap = "butt";  // outlines along the sides only: pieces of one tube run on
@@ -188,7 +200,7 @@ export function show(root, D, asked = new Map(), keep = () => {}) {
     pen.lineCap = "butt";  // outlines along the sides only: pieces of one tube run on
     line(a, b, width + (e === hover ? 5 : 1.6), e === hover ? look.sensor : css([60, 60, 60], fade));
     pen.lineCap = width < 8 ? "round" : "butt";  // round ends of a wide tube would cover its neighbour when bent
-    line(a, b, width, css(colour(now[e]), fade));
+    line(a, b, width, tube(a, b, width, colour(now[e]), fade));
     if (shown("flooded") && D.flooded[e]) {
       pen.lineCap = "butt"; pen.setLineDash([4, 8]); line(a, b, Math.max(1, 0.3 * width), "#56b4e9"); pen.setLineDash([]);
     }
