@@ -49,5 +49,5 @@ def test_it_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
             assert result.exit_code == 0, (line, result.output)
 
 
-def test_there_are_six_tutorials_and_two_notebooks() -> None:
-    assert (len(TUTORIALS), len(NOTEBOOKS)) == (6, 2)
+def test_there_are_seven_tutorials_and_two_notebooks() -> None:
+    assert (len(TUTORIALS), len(NOTEBOOKS)) == (7, 2)

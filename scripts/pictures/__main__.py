@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+import httpx
 import plotly.graph_objects as go
 from playwright.sync_api import Page, sync_playwright
 
@@ -54,6 +57,27 @@ SHOTS = (
     Shot("simulation", "parked.html", "Welch"),
     Shot("watching", "watched/report.html", "nine days out of ten"),
 )
+WINDOW = (
+    Shot("window_turbine", "/assets/demo", None, 1280, 900),
+    Shot(
+        "window_timeline",
+        "/assets/demo/timeline?mode=fore_aft_2&from=2023-12-05&to=2025-11-30",
+        None,
+        1280,
+        800,
+    ),
+    Shot(
+        "window_structure",
+        "/assets/demo/structure?quantity=life%20left,%20worst%20weld%20%5Byears%5D&motion=fore-aft%202&play=0&phase=0.02",
+        None,
+        1280,
+        1040,
+    ),
+    Shot("window_record", "/assets/demo/records/{record}", None, 1280, 1100),
+    Shot("window_life", "/assets/demo/life", None, 1280, 760),
+)
+"""Pages of the demonstration, served; ``{record}`` is its newest record."""
+ADDRESS, PORT = "http://127.0.0.1:8479", "8479"
 
 
 def main(out: Path) -> None:
@@ -73,17 +97,49 @@ def main(out: Path) -> None:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium")
         for shot in SHOTS:
             page = browser.new_page(viewport={"width": shot.width, "height": shot.height})
-            _take(page, folder / shot.page, shot, out / f"{shot.name}.png")
+            _take(page, (folder / shot.page).as_uri(), shot, out / f"{shot.name}.png")
             page.close()
+        with _demonstration(folder / "live") as record:
+            for shot in WINDOW:
+                page = browser.new_page(viewport={"width": shot.width, "height": shot.height})
+                _take(page, ADDRESS + shot.page.format(record=record), shot, out / f"{shot.name}.png")
+                page.close()
         for drawn, figure in DRAWN.items():
             _draw(browser.new_page(viewport={"width": 760, "height": 460}), figure, out / f"{drawn}.png")
         browser.close()
 
 
-def _take(page: Page, path: Path, shot: Shot, out: Path) -> None:
+@contextmanager
+def _demonstration(store: Path) -> Iterator[str]:
+    """Serve the demonstration until its last record is observed and reported; yield that record's number."""
+    print("jackettwin serve --demo", file=sys.stderr)
+    command = [sys.executable, "-m", "jackettwin", "serve", str(store), "--demo", "--port", PORT]
+    server = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        yield _newest_record()
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def _newest_record(within_s: float = 600.0) -> str:
+    with httpx.Client(base_url=f"{ADDRESS}/api/v1/assets/demo") as api:
+        for _ in range(int(within_s)):
+            time.sleep(1.0)
+            try:
+                known = api.get("/twin").json().get("parameters", {})
+                records = api.get("/records", params={"limit": 1}).json().get("items", [])
+            except httpx.TransportError:  # it has not started
+                continue
+            if known.get("reported") and records and records[0]["status"] == "observed":
+                return str(records[0]["record_id"])
+    raise TimeoutError(f"no report of the demonstration within {within_s:g} s")
+
+
+def _take(page: Page, url: str, shot: Shot, out: Path) -> None:
     """Keep the picture of a figure, without its caption's surroundings."""
-    page.goto(path.as_uri())
-    page.wait_for_timeout(2000)
+    page.goto(url)
+    page.wait_for_timeout(2500)
     if shot.figure is None:
         page.screenshot(path=out)
         return

@@ -7,7 +7,7 @@ import { csvFrom } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
-import { linkWith, useChosen } from "../shell/place";
+import { assetUrl, linkWith, useChosen } from "../shell/place";
 import { count, fixed, scientific, years } from "../words/numbers";
 import { day } from "../words/time";
 
@@ -112,6 +112,7 @@ export default function Life({ asset }: PageProps) {
               <Card
                 title="Welds, the shortest life first"
                 wide
+                more={<a href={assetUrl(asset, "structure") + COLOURED}>In space</a>}
                 note="As if the years were like the records; the interval is what records, curves and factors leave open."
               >
                 <Table
@@ -142,6 +143,9 @@ export default function Life({ asset }: PageProps) {
     </>
   );
 }
+
+/** The structure coloured by its welds' lives. */
+const COLOURED = `?quantity=${encodeURIComponent("life left, worst weld [years]")}`;
 
 /** How long records are, in words. */
 const span = (s: number): string =>

@@ -11,6 +11,7 @@ import click
 from jackettwin.cli.console import CommandGroup, Reply, answers, say, show_table
 from jackettwin.cli.store_options import StorePlace, store_options
 from jackettwin.errors import require
+from jackettwin.files import find_file
 from jackettwin.report import Table, TableColumn
 
 
@@ -21,19 +22,21 @@ def asset_command() -> None:
 
 @asset_command.command("add")
 @click.argument("name")
-@click.argument("twin", type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.argument("twin")
 @click.option("--comment", default="", help="What this version changes.")
 @answers
 @store_options
-def add(name: str, twin: Path, comment: str, at: StorePlace) -> Reply:
+def add(name: str, twin: str, comment: str, at: StorePlace) -> Reply:
     """Add the turbine NAME with its twin file, and copy in every file that this one names.
 
-    If the turbine NAME exists, a new version is added, which is used once it is adopted.
+    TWIN is a twin file or the name of a shipped twin. If the turbine NAME exists, a new version is added,
+    which is used once it is adopted.
     """
+    path = find_file(twin, "twins")
     engine = at.open(make=True)
     from jackettwin.service import add_twin
 
-    document = add_twin(engine, at.folder, name, twin, comment)
+    document = add_twin(engine, at.folder, name, path, comment)
     return Reply(
         document, lambda: say(f"{name}: version {document['version']}, model {document['model_hash'][:12]}")
     )
