@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import httpx
 import plotly.graph_objects as go
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page, expect, sync_playwright
 
 from pictures.drawn import DRAWN
 from pictures.table import write_table
@@ -139,7 +139,9 @@ def _newest_record(within_s: float = 600.0) -> str:
 def _take(page: Page, url: str, shot: Shot, out: Path) -> None:
     """Keep the picture of a figure, without its caption's surroundings."""
     page.goto(url)
-    page.wait_for_timeout(2500)
+    page.wait_for_timeout(1000)
+    expect(page.locator(".bones")).to_have_count(0, timeout=60_000)  # what the window shows while it waits
+    page.wait_for_timeout(2000)
     if shot.figure is None:
         page.screenshot(path=out)
         return
