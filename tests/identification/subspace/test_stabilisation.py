@@ -7,18 +7,20 @@ import pytest
 
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.subspace.ssi_cov import OrderPoles
-from jackettwin.identification.subspace.stabilisation import stabilisation
+from jackettwin.identification.subspace.stabilisation import few_block_widening, stabilisation
 
 RATE_HZ, DURATION_S = 4.0, 600.0
+BLOCKS = 30
 
 
 def test_a_pole_that_hardly_grows_is_that_of_a_light_mode_as_well_known_in_its_decay() -> None:
     growth = np.array([-2.0, 0.3, 1.2])  # e-folds within the record
     pole = growth / DURATION_S + 2j * np.pi * np.array([0.3, 0.5, 0.8])
     mu = np.exp(pole / RATE_HZ)
-    change = 0.1 / DURATION_S  # of the real part [1/s], in one block
+    change = 0.1 / DURATION_S  # of the real part [1/s]
+    one = mu * change / RATE_HZ / np.sqrt(BLOCKS)
     poles = OrderPoles(
-        2, mu, np.ones((3, 2), complex), mu * change / RATE_HZ + 0j * mu[None], np.zeros((1, 3, 2), complex)
+        2, mu, np.ones((3, 2), complex), np.tile(one, (BLOCKS, 1)), np.zeros((BLOCKS, 3, 2), complex)
     )
     found = stabilisation(
         [poles],
@@ -34,5 +36,17 @@ def test_a_pole_that_hardly_grows_is_that_of_a_light_mode_as_well_known_in_its_d
     np.testing.assert_allclose(decay, [2.0, 1.0], rtol=1e-6)
     # ζ = −Re λ/|λ|: an equal change of the real part counts twice as much where it is half as large
     assert found.log_covariance is not None
-    np.testing.assert_allclose(np.sqrt(found.log_covariance[:, 1, 1]), [0.05, 0.1], rtol=1e-3)
-    assert found.damping_ratio_std == pytest.approx(change / (2.0 * np.pi * np.array([0.3, 0.5])), rel=1e-3)
+    # with the 95 % quantiles of Student's t of 29 degrees of freedom and of the normal distribution
+    wider = 1.699 / 1.645
+    np.testing.assert_allclose(np.sqrt(found.log_covariance[:, 1, 1]) / wider, [0.05, 0.1], rtol=1e-3)
+    std = wider * change / (2.0 * np.pi * np.array([0.3, 0.5]))
+    assert found.damping_ratio_std == pytest.approx(std, rel=1e-3)
+
+
+def test_gusts_leave_few_blocks_to_judge_by(rng):
+    """Power in the ratio 1 to 0.001 in 5 of 30 blocks: about 5 degrees of freedom, t/z = 1.22 (tables)."""
+    size = np.where(np.arange(30) % 6 == 0, 1.0, np.sqrt(0.001))
+    widening = few_block_widening(size[:, None] * rng.standard_normal((30, 4000)))
+    assert np.median(widening) == pytest.approx(1.22, abs=0.06)
+    steady = few_block_widening(rng.standard_normal((30, 4000)))
+    assert np.median(steady) == pytest.approx(1.03, abs=0.01)

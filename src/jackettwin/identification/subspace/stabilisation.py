@@ -11,11 +11,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.special import stdtrit
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Stabilisation
 from jackettwin.identification.mode_shapes import mac, normalised
 from jackettwin.identification.subspace.ssi_cov import OrderPoles, frequency_and_damping
+from jackettwin.intervals import NORMAL_90
 
 if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
@@ -126,8 +128,41 @@ def _log_covariances(poles: list[OrderPoles], sample_rate_hz: float) -> FloatArr
                 return None
             continue
         both = np.stack(log_deviations(p.eigenvalues, p.eigenvalue_deviations, sample_rate_hz))
+        both *= few_block_widening(both)[:, None]
         out.append(np.einsum("ibp,jbp->pij", both, both))
     return np.concatenate(out) if out else None
+
+
+def few_block_widening(deviations: FloatArray) -> FloatArray:
+    r"""Return the ratio of the 90 % interval of Student's t to the normal one for sums over blocks.
+
+    Where gusts put the motion into few blocks, a variance is as uncertain as from so few. Its degrees of
+    freedom are those of Satterthwaite (1946, eq. 17),
+
+    .. math:: \nu = \frac{(\sum_b s_b^2)^2}{\sum_b s_b^4} \approx
+              3\,\frac{(\sum_b d_b^2)^2}{\sum_b d_b^4} - 2,
+
+    the second form with normal deviations :math:`d_b` for their variances; at most those of equal blocks.
+
+    Parameters
+    ----------
+    deviations : (…, n_blocks, n_poles)
+
+    Returns
+    -------
+    (…, n_poles)
+
+    Examples
+    --------
+    >>> one_of_thirty = np.where(np.arange(30) == 4, 1.0, 0.01)[:, None]
+    >>> few_block_widening(one_of_thirty).round(1), few_block_widening(np.ones((30, 1))).round(2)
+    (array([3.7]), array([1.03]))
+    """
+    square = deviations**2
+    fourth = np.sum(square**2, axis=-2)
+    freedom = 3.0 * square.sum(axis=-2) ** 2 / np.where(fourth > 0.0, fourth, 1.0) - 2.0
+    freedom = np.clip(freedom, 1.0, max(deviations.shape[-2] - 1, 1))
+    return np.asarray(stdtrit(freedom, 0.95) / NORMAL_90)
 
 
 def _shape_stds(poles: list[OrderPoles], scale: FloatArray) -> FloatArray | None:
