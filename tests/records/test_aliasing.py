@@ -47,6 +47,21 @@ def test_a_mode_that_is_folded_is_flagged(tower: SimpleNamespace) -> None:
     assert flagged(replace(moved, data=low, sample_rate_hz=10.0)) == ""
 
 
+def test_a_filter_that_ends_at_half_the_rate_is_a_filter(tower: SimpleNamespace) -> None:
+    """``resample_poly`` passes half the power at the new Nyquist frequency, where the rest is folded.
+
+    A mode at 3 Hz is not doubted then; in every second sample of the same record it may be one at 7 Hz.
+    """
+    record = tower.record(3)
+    rng = np.random.default_rng(1)
+    far = tower.oscillator(rng.normal(size=24_000), 3.0, 0.01, 20.0)[12_000:]
+    white = record.data.std() * rng.standard_normal(record.data.shape)
+    moved = record.data + record.data.std() / far.std() * far + white
+    low = signal.resample_poly(moved, 1, 2, axis=1)
+    assert flagged(replace(record, data=low, sample_rate_hz=10.0)) == ""
+    assert flagged(replace(record, data=moved[:, ::2], sample_rate_hz=10.0)) != ""
+
+
 def test_noise_and_motion_under_white_forces_are_not_flagged(tower: SimpleNamespace) -> None:
     for seed in range(20):
         y = tower.record(seed, noise=0.1).data
