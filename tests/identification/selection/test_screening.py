@@ -175,6 +175,24 @@ def test_one_moving_sensor_is_doubted(tower, rng):
     assert {m.status for m in found.modes if abs(m.frequency_hz - 0.7) > 0.1} == {"ok"}
 
 
+def test_a_dead_sensor_is_no_witness(tower, rng):
+    """The first mode along y is the top's, over what the low sensor shows; the one between them is unplugged.
+
+    Its noise shows no peak, so that it cannot be held against the top that it does not move.
+    """
+    shapes = np.array([[1.0, 0.0, 0.05, 0.0, 0.0], [-0.4, 0.0, 1.0, 0.0, 0.0]])
+    shapes = np.vstack([shapes, [[0.0, 0.0, 0.0, 1.0, 0.3], [0.0, 0.0, 0.0, -0.4, 1.0]]])
+    f = np.array([0.31, 2.84, 0.3, 2.76])
+    record = simulate(ModalSystem(f, np.full(4, 0.01), shapes, np.eye(4)), rng, sample_rate_hz=10.0)
+    data = record.data.copy()
+    data[1] = 1e-9 * rng.standard_normal(data.shape[1])
+    x, y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+    channels = tuple(Channel(f"a{k}", direction=d) for k, d in enumerate((y, y, y, x, x)))
+    modes = identify(Record(data, 10.0, channels)).modes
+    assert {round(m.frequency_hz, 1): m.status for m in modes} == {0.3: "ok", 2.8: "ok"}
+    assert len(modes) == 4
+
+
 @pytest.fixture
 def clear(tower, rng) -> tuple[ModalEstimate, Evidence]:
     """A mode of the tower at 1.2 Hz that nothing speaks against, and what it is judged by."""

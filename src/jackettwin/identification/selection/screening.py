@@ -159,7 +159,7 @@ class Evidence:
     band_hz : (low, high)
         Band of interest.
     comparable : (n_channels, n_channels)
-        Channels that may show the same motion.
+        Channels that may show the same motion: a silent one, without any clear peak, shows none.
     peaks_hz : tuple of float
         Clear peaks of any channel.
     sensors : bool
@@ -209,6 +209,10 @@ def evidence(
     sensors : bool
         Whether the channels are sensors, not components of many sensors.
     """
+    spectrum = welch(y, ready.settings.sample_rate_hz)
+    peaks = [clear_peaks_hz(spectrum.frequencies_hz, row[None]) for row in spectrum.density]
+    moving = np.array([len(own) > 0 for own in peaks])
+    comparable = comparable_channels(channel_axes(ready.channels)) & np.outer(moving, moving)
     periods = [conditions[key] for key in PERIODS if isinstance(conditions.get(key), int | float)]
     return Evidence(
         looks=(second_look(y, ready), *looks),
@@ -217,15 +221,10 @@ def evidence(
         duration_s=y.shape[1] / ready.settings.sample_rate_hz,
         peak_of_sea_hz=1.0 / periods[0] if periods and periods[0] > 0.0 else None,
         band_hz=(ready.settings.lowest_frequency_hz, ready.settings.highest_frequency_hz),
-        peaks_hz=_peaks_hz(y, ready.settings.sample_rate_hz),
-        comparable=comparable_channels(channel_axes(ready.channels)),
+        peaks_hz=tuple(sorted({f for own in peaks for f in own})),
+        comparable=comparable | np.eye(len(moving), dtype=np.bool_),
         sensors=sensors,
     )
-
-
-def _peaks_hz(y: FloatArray, sample_rate_hz: float) -> tuple[float, ...]:
-    spectrum = welch(y, sample_rate_hz)
-    return tuple(clear_peaks_hz(spectrum.frequencies_hz, spectrum.density))
 
 
 def screen(
