@@ -117,6 +117,7 @@ FAULTS = (
         ("API's alpha has the wrong exponent", "psi ** (-0.5 if psi <= 1.0 else -0.25)", "psi ** (-0.25 if psi <= 1.0 else -0.5)"),
         ("a springpot's derivative lacks alpha", "slope = slope + alpha * k_alpha", "slope = slope + k_alpha"),
         ("Kelvin–Voigt's tau is inverted", "return Prony(k=(k,), tau=(c / k,))", "return Prony(k=(k,), tau=(k / c,))"),
+        ("dashpots of a pile's head give what they should take", "Spring(foot, head.dashpots, Prony(c=1.0))", "Spring(foot, -head.dashpots, Prony(c=1.0))"),
         ("radiation: another exponent", "(0.25 * np.pi) ** 0.75 * a0**-0.25", "(0.25 * np.pi) ** 0.75 * a0**0.25"),
     )),
     *_of("loads", rows=(

@@ -267,6 +267,10 @@ class Client:
         """Return the structure to draw."""
         return self._asked("GET", f"/assets/{asset}/structure", params=query)
 
+    def laws(self) -> list[Answer]:
+        """Return the support laws that the server knows, with their parameters."""
+        return list(self._pages("/laws"))
+
     def law(self, of: str, low_hz: float = 0.01, high_hz: float = 10.0) -> Answer:
         """Return storage, loss, creep and relaxation of a support law."""
         return self._asked("GET", "/law", params={"of": of, "low_hz": low_hz, "high_hz": high_hz})

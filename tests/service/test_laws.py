@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from jackettwin.soil import DEFAULT_LAWS, families
+
 URL = "/api/v1/law"
 
 
@@ -23,3 +25,15 @@ def test_a_kelvin_voigt_support_stores_k_and_loses_omega_c(client: TestClient) -
 def test_a_law_that_is_none_is_refused(client: TestClient, of: str) -> None:
     answer = client.get(URL, params={"of": of})
     assert answer.status_code == 422 and answer.json()["detail"]
+
+
+def test_every_law_is_listed_with_the_parameters_it_takes(client: TestClient) -> None:
+    """In the middle between its bounds each is drawn; the usual laws come first."""
+    items = client.get("/api/v1/laws").json()["items"]
+    assert [law["name"] for law in items][: len(DEFAULT_LAWS)] == list(DEFAULT_LAWS)
+    assert {law["name"] for law in items} == set(families())
+    for law in items:
+        given = (f"{p['name']}={(p['low'] * p['high']) ** 0.5}" for p in law["parameters"])
+        answer = client.get(URL, params={"of": f"{law['name']}:{','.join(given)}"})
+        assert answer.status_code == 200, answer.text
+        assert all(p["words"] for p in law["parameters"])

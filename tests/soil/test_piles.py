@@ -15,7 +15,7 @@ from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.ground.profile import Clay, Layer, Sand, Scour, SoilProfile
 from jackettwin.soil.laws.viscoelastic import Springpot
 from jackettwin.soil.piles.capacity import push
-from jackettwin.soil.piles.impedance import head_impedance, lumped_head
+from jackettwin.soil.piles.impedance import head_impedance, lumped_head, on_pile_heads
 from jackettwin.soil.piles.piles import Pile, dashpots, linear_springs, stations
 from jackettwin.soil.piles.reaction_curves import linearised, pile_curves
 from jackettwin.structure import assemble
@@ -80,11 +80,17 @@ def test_stations_share_out_every_layer() -> None:
 
 @pytest.mark.parametrize("law", [dashpots(0.02, 1.15), Springpot.from_loss_factor(1.0, 0.1, 1.15)])
 def test_the_lumped_head_follows_the_exact_one(law) -> None:
+    """So do the springs and the mass that a foot is given, which radiate, too."""
     springs = linear_springs(PILE, lateral=lambda z: 1e7 * z, axial=lambda z: 1e8 + 0.0 * z)
-    lumped = lumped_head(PILE, springs, law=law)
-    s = 2j * np.pi * np.array([0.1, 0.3, 1.0])
-    exact = head_impedance(PILE, springs, s, law=law)
-    error = np.abs(lumped.impedance(s) - exact).max(axis=(1, 2)) / np.abs(exact).max(axis=(1, 2))
+    lost = linear_springs(PILE, lateral=lambda z: 2e5 + 0.0 * z, axial=lambda z: 1e5 + 0.0 * z)
+    support = on_pile_heads(read_structure("jacket15"), lumped_head(PILE, springs, law=law, dashpots=lost))
+    foot, mass = support.masses[0]
+    s = 2j * np.pi * np.array([0.1, 0.3, 1.0])[:, None, None]
+    lumped = s**2 * mass + sum(
+        one.law.stiffness(s) * one.matrix for one in support.springs if one.node == foot
+    )
+    exact = head_impedance(PILE, springs, s.ravel(), law=law, dashpots=lost)
+    error = np.abs(lumped - exact).max(axis=(1, 2)) / np.abs(exact).max(axis=(1, 2))
     assert (error < [1e-3, 1e-3, 5e-3]).all()  # second order in D − 1 and in ω²
     dissipated = np.linalg.eigvalsh(exact.imag)
     assert (dissipated > -1e-6 * np.abs(exact).max()).all()

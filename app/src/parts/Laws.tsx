@@ -9,34 +9,14 @@ import { Plot } from "./plot/Plot";
 import type { PlotData, Series } from "./plot/series";
 import { Shown } from "./Shown";
 
-/** Of each parameter: name, unit, least, greatest and first value, in decades where it spans some. */
-type Parameter = readonly [string, string, number, number, number];
-const K = ["N/m", 7, 11, 9.4] as const;
-const F0 = ["f0", "Hz", -2, 1, -0.74] as const;
-const LAWS: Record<string, readonly Parameter[]> = {
-  "maxwell-3": [["k", ...K], ["loss_factor", "", 0.001, 0.5, 0.03], F0],
-  "kelvin-voigt": [
-    ["k", ...K],
-    ["c", "N·s/m", 6, 10, 8.9],
-  ],
-  zener: [
-    ["k0", ...K],
-    ["c", "N·s/m", 6, 10, 8.9],
-    ["k1", "N/m", 7, 12, 10],
-  ],
-  springpot: [["k", ...K], ["alpha", "", 0.001, 0.5, 0.06], F0],
+type Parameter = Schemas["LawParameterOut"];
+
+/** A parameter's slider, in decades between its bounds. */
+const sliderOf = ({ name, low, high }: Parameter) => {
+  const [min, max] = [Math.log10(low), Math.log10(high)];
+  return { name, usual: (min + max) / 2, min, max, step: "any" as const };
 };
-const WORDS: Record<string, string> = {
-  k: "stiffness k",
-  c: "dashpot c",
-  k0: "static stiffness k0",
-  k1: "stiffness of the damping branch k1",
-  loss_factor: "loss factor at f0",
-  alpha: "springpot exponent alpha",
-  f0: "reference frequency f0",
-};
-const sliderOf = ([name, , min, max, usual]: Parameter) => ({ name, usual, min, max, step: "any" as const });
-const valueOf = (p: Parameter): number => (p[1] ? 10 ** slid(sliderOf(p)) : slid(sliderOf(p)));
+const valueOf = (p: Parameter): number => 10 ** slid(sliderOf(p));
 
 function plotsOf(law: Schemas["LawOut"]): PlotData[] {
   const one = (title: string, yName: string, time: boolean, log: boolean, y: Series["y"]): PlotData => ({
@@ -57,23 +37,35 @@ function plotsOf(law: Schemas["LawOut"]): PlotData[] {
 }
 
 export function Laws() {
-  const name = useChosen("law", Object.keys(LAWS));
-  const parameters = LAWS[name] ?? [];
-  const of = `${name}:${parameters.map((p) => `${p[0]}=${valueOf(p).toPrecision(4)}`).join(",")}`;
-  const found = useAnswer(null, "law", async () => told(api.GET("/api/v1/law", { params: { query: { of } } })), of);
-  const plots = useMemo(() => (found.data ? plotsOf(found.data) : []), [found.data]);
+  const known = useAnswer(null, "laws", async () => told(api.GET("/api/v1/laws")));
   return (
     <Card
       title="Laws"
       wide
       note="What a support does in each law: move a parameter, and see what it stores, loses and how it creeps."
     >
+      <Shown of={known}>{({ items }) => <Law laws={items} />}</Shown>
+    </Card>
+  );
+}
+
+function Law({ laws }: { laws: readonly Schemas["LawFamilyOut"][] }) {
+  const name = useChosen(
+    "law",
+    laws.map((law) => law.name),
+  );
+  const parameters = laws.find((law) => law.name === name)?.parameters ?? [];
+  const of = `${name}:${parameters.map((p) => `${p.name}=${valueOf(p).toPrecision(4)}`).join(",")}`;
+  const found = useAnswer(null, "law", async () => told(api.GET("/api/v1/law", { params: { query: { of } } })), of);
+  const plots = useMemo(() => (found.data ? plotsOf(found.data) : []), [found.data]);
+  return (
+    <>
       <div class="tools">
-        <Choice label="Law" kept="law" options={Object.keys(LAWS)} />
+        <Choice label="Law" kept="law" options={laws.map((law) => law.name)} />
       </div>
       {parameters.map((p) => (
-        <Slide key={p[0]} of={sliderOf(p)}>
-          {WORDS[p[0]]} <b>{quantity(valueOf(p), p[1], 3)}</b>
+        <Slide key={p.name} of={sliderOf(p)}>
+          {p.words} {p.name} <b>{quantity(valueOf(p), p.unit === "-" ? "" : p.unit, 3)}</b>
         </Slide>
       ))}
       <Shown of={found}>
@@ -85,6 +77,6 @@ export function Laws() {
           </div>
         )}
       </Shown>
-    </Card>
+    </>
   );
 }

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.arrays import FloatArray
 from jackettwin.soil.laws.viscoelastic import Law
 
 
@@ -34,9 +32,3 @@ class PileHead:
     inner: InnerPile
     """What it does beside following its head."""
     law: Law
-
-    def impedance(self, s: ComplexArray | complex) -> ComplexArray:
-        """Return the lumped K*(s), (n_s, 6, 6)."""
-        s = np.atleast_1d(np.asarray(s, dtype=np.complex128))[:, None, None]
-        soil = self.law.stiffness(s) * self.soil + s * self.dashpots
-        return np.asarray(self.steel + soil + s**2 * self.mass)

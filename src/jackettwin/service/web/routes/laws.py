@@ -1,4 +1,4 @@
-"""Route for support laws: what one does at every frequency and through time."""
+"""Routes for support laws: which there are, and what one does at every frequency and through time."""
 
 from __future__ import annotations
 
@@ -6,15 +6,33 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from jackettwin.files import null_for_nan
+from jackettwin.files import named, null_for_nan
 from jackettwin.service.web import auth
 from jackettwin.service.web.dependencies import WAITING, Route
 from jackettwin.service.web.problems import answers
-from jackettwin.service.web.schemas.drawings import LawOut
+from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.drawings import LawFamilyOut, LawOut, LawParameterOut
 
 router = APIRouter(tags=["answers"], route_class=Route)
 
 _POINTS = 200
+_F0 = LawParameterOut(name="f0", words="reference frequency", unit="Hz", low=0.01, high=10.0)
+"""Of laws that are stated at one; below and above it no structure has its first mode."""
+
+
+@router.get("/laws", dependencies=[auth.VIEWER, WAITING], responses=answers(401, 422))
+def laws() -> Page[LawFamilyOut]:
+    """List the support laws, also of installed packages, the usual ones first."""
+    from jackettwin.soil import DEFAULT_LAWS, families
+
+    known = families()
+    found = []
+    for name in dict.fromkeys((*DEFAULT_LAWS, *known)):
+        law = known[name]
+        each = [LawParameterOut(**named(p, "name", "words", "unit", "low", "high")) for p in law.parameters]
+        parameters = [*each, _F0] if law.needs_frequency else each
+        found.append(LawFamilyOut(name=name, words=law.words, parameters=parameters))
+    return Page(items=found)
 
 
 @router.get("/law", dependencies=[auth.VIEWER, WAITING], responses=answers(401, 422))

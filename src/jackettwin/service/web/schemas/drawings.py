@@ -99,6 +99,24 @@ class ExploredOut(BaseModel):
     curves: list[CurveOut] = []
 
 
+class LawParameterOut(BaseModel):
+    """A parameter of a law, and the bounds between which it is sought."""
+
+    name: str
+    words: str
+    unit: str
+    low: float
+    high: float
+
+
+class LawFamilyOut(BaseModel):
+    """A support law that the server knows; ``name:parameter=value,…`` is one of it."""
+
+    name: str
+    words: str
+    parameters: list[LawParameterOut]
+
+
 class LawOut(BaseModel):
     """A support law over frequency and time: D(2πif) = storage + i·loss, and its answer to steps.
 
