@@ -16,6 +16,7 @@ from common.command import arguments
 
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.piles.cyclic import CyclicPile, loop
+from jackettwin.soil.piles.impedance import head_impedance
 from jackettwin.soil.piles.piles import dashpots
 from jackettwin.soil.support import ELASTIC
 
@@ -30,9 +31,9 @@ def main() -> None:
     arguments(__doc__)
     foundation = replace(read_foundation("jacket15"), law=ELASTIC)
     pile = foundation.cyclic()
-    K0 = foundation.head().impedance(0.0)[0].real
-    law = dashpots(RATIO, 2.0 * pi * FREQUENCY_HZ)
-    K = replace(foundation, law=law).head().impedance(2j * pi * FREQUENCY_HZ)[0]
+    springs, law = foundation.springs, dashpots(RATIO, 2.0 * pi * FREQUENCY_HZ)
+    K0 = head_impedance(foundation.pile, springs, 0.0)[0].real
+    K = head_impedance(foundation.pile, springs, 2j * pi * FREQUENCY_HZ, law=law)[0]
     lines = [
         "# Loops of the ground",
         "",

@@ -129,6 +129,7 @@ FAULTS = (
         ("lift and drag are swapped in the torque", "(cl * np.sin(phi) - cd * np.cos(phi))", "(cl * np.cos(phi) - cd * np.sin(phi))"),
         ("the coherence's decay is halved", "np.exp(-DECAY * np.hypot(", "np.exp(-0.5 * DECAY * np.hypot("),
         ("fluctuations have half the variance", "sigma = SIGMA_RATIOS[component] * wind.sigma", "sigma = 0.7 * SIGMA_RATIOS[component] * wind.sigma"),
+        ("water in a steep wave is pushed by its speed", "u - 0.5 * (u**2 + w**2))", "u + 0.5 * (u**2 + w**2))"),
         ("x and y of a wave's direction are swapped", "np.stack([u * np.cos(self.direction), u * np.sin(self.direction), w], axis=1)", "np.stack([u * np.sin(self.direction), u * np.cos(self.direction), w], axis=1)"),
     )),
     *_of("response", "tests/response", "tests/structure/test_rotor_modes.py", rows=(

@@ -33,13 +33,16 @@ def test_stream_function_meets_bernoulli_and_kinematics_at_the_surface() -> None
     u = wave.motion(surface, np.zeros(1))[0][0]
     head = G * eta + 0.5 * ((u[:, 0] - c) ** 2 + u[:, 2] ** 2)
     np.testing.assert_allclose(head, head.mean(), rtol=1e-4)  # 20 harmonics of a steep wave
+    np.testing.assert_allclose(wave.pressure(surface, np.zeros(1))[0], G * eta, atol=2e-4 * head.mean())
     h = 1e-3
     slope = (wave.elevation(flat + [h, 0, 0], np.zeros(1)) - wave.elevation(flat - [h, 0, 0], np.zeros(1)))[0]
     np.testing.assert_allclose(u[:, 2], (u[:, 0] - c) * slope / (2 * h), atol=2e-3 * np.abs(u).max())
 
 
 @pytest.mark.parametrize("theory", THEORIES)
-def test_velocity_is_raschiis_and_acceleration_its_total_derivative(theory: str) -> None:
+def test_velocity_is_raschiis_and_acceleration_its_total_derivative_and_what_pressure_drives(
+    theory: str,
+) -> None:
     wave = regular_wave(theory, height=10.0, period=12.0, depth=40.0)
     model, n = (raschii.StokesWave, 5) if theory == "stokes-5" else (raschii.FentonWave, 12)
     theirs = model(height=10.0, depth=40.0, period=12.0, N=n, g=G)
@@ -51,6 +54,8 @@ def test_velocity_is_raschiis_and_acceleration_its_total_derivative(theory: str)
         2 * h
     )
     np.testing.assert_allclose(a, follow, atol=1e-5)
+    pushed = [(wave.pressure(p - h * e, 0.0) - wave.pressure(p + h * e, 0.0))[0] / (2 * h) for e in np.eye(3)]
+    np.testing.assert_allclose(np.stack(pushed, axis=1), a, atol=1e-5)  # Euler: Du/Dt = −∇p/ρ
 
 
 @pytest.mark.parametrize(("height", "period", "depth"), [(2.0, 12.0, 5.0), (20.0, 14.0, 50.0)])
