@@ -15,7 +15,13 @@ from tests.change.test_judge import CHANGED, MODEL, SIXTY, days_of
 from jackettwin.change import corrections
 from jackettwin.change.alarms import likeliest_of
 from jackettwin.change.judge import JUDGED, StoredMonitoring, judge
-from jackettwin.change.watch_document import corrected_sentence, one_of, verdict_words, with_later_look
+from jackettwin.change.watch_document import (
+    corrected_sentence,
+    likeliest,
+    one_of,
+    verdict_words,
+    with_later_look,
+)
 from jackettwin.watching import CauseVerdict, Diagnosis
 
 
@@ -60,6 +66,30 @@ def test_what_was_never_clear_or_is_not_distinguished_is_no_correction() -> None
     found = with_later_look(soil, document("2025-03-10", "scour", 5.0, 0.8))
     (one,) = found["verdicts"]
     assert (one["cause"], one["probability"], one["time_utc"]) == ("scour", 0.8, "2025-03-09")
+
+
+def test_two_causes_that_stay_about_equal_do_not_correct_each_other() -> None:
+    """Ice that came again was told as that, as a mass, as ice and as a mass within a month, at 50 to 56 %."""
+
+    def look(time: str, again: float) -> dict[str, object]:
+        named = sorted({"again": again, "mass": 1.0 - again}.items(), key=lambda one: -one[1])
+        found = document(time, named[0][0], 1.0, named[0][1])
+        return {**found, "causes": [{"cause": cause, "probability": p} for cause, p in named]}
+
+    found = look("2025-03-01", 0.56)
+    for time, again in (
+        ("2025-03-02", 0.45),
+        ("2025-03-03", 0.42),
+        ("2025-03-04", 0.55),
+        ("2025-03-06", 0.4),
+    ):
+        found = with_later_look(found, look(time, again))
+        (one,) = found["verdicts"]
+        assert (one["cause"], one["probability"]) == ("again", again)
+    assert likeliest(found) == "cause not clear: mass (60 %), again (40 %)"
+    found = with_later_look(found, look("2025-03-09", 0.2))
+    was, now = found["verdicts"]
+    assert (was["cause"], now["cause"], now["time_utc"]) == ("again", "mass", "2025-03-09")
 
 
 def test_causes_that_are_not_distinguished_are_named_together() -> None:

@@ -112,17 +112,24 @@ def test_a_table_as_analysts_export_it_says_the_same(wide: Columns, tmp_path: Pa
     """Titles above, numbered rows, the newest first, and another mode beside those that are watched."""
     n = len(wide["time"])
     other = np.linspace(1.0, 1.1, n) + 0.01 * np.cos(np.arange(n))
-    plain = written(wide | {"T1": wide["temperature"]}, tmp_path / "a.csv").read_text().splitlines()
-    header, *body = [f'"",{plain[0]},torsion_1,w,w_damping', *(
-        f"{i},{line},{x:.4f},{x:.3f},0.01" for i, (line, x) in enumerate(zip(plain[1:], other, strict=True))
-    )]  # fmt: skip
+    more = {"T1": wide["temperature"], "f1_damping": 0.01 * wide["f1"], "f1_damping_std": 0.1 * wide["f2"]}
+    plain = written(wide | more, tmp_path / "a.csv").read_text().splitlines()
+    header = f'"",{plain[0]},torsion_1,w,w_damping,Status'
+    rows = enumerate(zip(plain[1:], other, strict=True))
+    body = [f"{i},{line},{x:.4f},{x:.3f},0.01,ok" for i, (line, x) in rows]
     path = tmp_path / "b.csv"
     path.write_text("\n".join(["Modes of 2024,,,,,,,,", "turbine A01", header, *body[::-1]]))
     one = read_modal_table(tmp_path / "a.csv", columns=("f1", "f2"))
     found = read_modal_table(path, columns=("f1", "f2"))
     np.testing.assert_array_equal(found.history.frequency, one.history.frequency)
     assert found.history.condition_names == one.history.condition_names == ("temperature", "T1")
-    assert "not taken as conditions: a column without name, torsion_1, w, w_damping" in found.remarks
+    said = "not taken as conditions: a column without name, torsion_1, w, w_damping, Status"
+    assert said in found.remarks and not any("per cent" in remark for remark in found.remarks)
+    percent = more | {name: 100.0 * more[name] for name in ("f1_damping", "f1_damping_std")}
+    read = read_modal_table(written(wide | percent, tmp_path / "p.csv"), columns=("f1", "f2"))
+    np.testing.assert_allclose(read.history.damping, one.history.damping)
+    np.testing.assert_allclose(read.history.damping_std, one.history.damping_std)
+    assert any("taken as per cent" in remark for remark in read.remarks)
     (tmp_path / "c.xlsx").write_bytes(b"PK\x03\x04 of Excel")
     with pytest.raises(InputError, match="save the sheet as CSV"):
         read_modal_table(tmp_path / "c.xlsx")

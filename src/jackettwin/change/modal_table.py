@@ -39,6 +39,8 @@ _MODAL = re.compile(
 )
 """Names of columns that depend on modes or describe the table;
 as conditions they would explain damage away."""
+_LARGEST_USUAL = 0.25
+"""Largest median of damping ratios: modes with more are not identified, and per cent are seldom less."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
@@ -246,7 +248,7 @@ def _days(stamps: Stamps) -> tuple[FloatArray, datetime]:
 def _conditions(
     stored: Columns, time_names: tuple[str, ...], columns: Sequence[str], given: Sequence[str] | None
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the names of the columns that are conditions, and of numbers that are not taken for such."""
+    """Return the names of the columns that are conditions, and of those that are not taken for such."""
     for name in (*columns, *(given or ())):
         if name not in stored:
             raise InputError(
@@ -261,9 +263,11 @@ def _conditions(
             )  # fmt: skip
         return tuple(given), ()
     taken = {*time_names, "label", *QUANTITIES, *(c + s for c in columns for s in _SUFFIXES)}
-    numbers = [n for n, x in stored.items() if x.dtype.kind == "f"]
-    free = [n for n in numbers if n not in taken and n.lower() not in _STATES]
-    left = tuple(n for n in free if _MODAL.search(n) or _names_a_mode(n, stored) or _counts(stored[n]))
+    free = [n for n in stored if n not in taken and n.lower() not in _STATES]
+    left = tuple(
+        n for n in free
+        if stored[n].dtype.kind != "f" or _MODAL.search(n) or _names_a_mode(n, stored) or _counts(stored[n])
+    )  # fmt: skip
     return tuple(n for n in free if n not in left), left
 
 
@@ -395,6 +399,10 @@ def _label(word: Any) -> str:
 def _checked(history: History) -> tuple[History, tuple[str, ...]]:
     """Return the history with impossible values missing, and remarks."""
     remarks = []
+    usual = float(np.nanmedian(history.damping)) if np.isfinite(history.damping).any() else 0.0
+    if usual > _LARGEST_USUAL:
+        history = replace(history, damping=0.01 * history.damping, damping_std=0.01 * history.damping_std)
+        remarks.append(f"damping of {usual:.2g} in the median is no ratio: taken as per cent")
     arrays: dict[str, Any] = {}
     for what, column in QUANTITIES.items():
         x = getattr(history, column)

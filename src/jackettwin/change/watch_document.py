@@ -13,6 +13,8 @@ from jackettwin.change.alarms import Alarm, likeliest_of
 from jackettwin.intervals import NORMAL_90
 from jackettwin.watching import CLEAR, CauseVerdict, Watch
 
+_TURNED = 3.0
+"""Odds at which another cause corrects the one that was named: substantial evidence (Jeffreys 1961)."""
 _NAMED, _LIKELY = 3, 0.001
 """Number of causes in a sentence if none is clear, and the smallest probability of a listed cause."""
 
@@ -22,19 +24,24 @@ def with_later_look(before: Mapping[str, Any], later: Mapping[str, Any]) -> dict
 
     Its size, begin and causes are those of the later look; its time and evidence stay those of the alarm.
     ``verdicts`` holds what was called likeliest, from when on; the last is today's. A look corrects another
-    if either was clear and they name no cause together. ``at_alarm`` is the document of the alarm's day.
+    if either was clear and they name no cause together, and what was named is now ``_TURNED`` times less
+    likely: two causes that stay about equal would correct each other with every look. Until then what was
+    named stays, as likely as it is now. ``at_alarm`` is the document of the alarm's day.
     """
     *earlier, was = before["verdicts"]
     now = later["verdicts"][-1]
-    same = not set(was["named"]).isdisjoint(now["named"])
-    same |= max(was["probability"], now["probability"]) < CLEAR
+    left = sum(one["probability"] for one in later["causes"] if one["cause"] in was["named"])
+    apart = set(was["named"]).isdisjoint(now["named"])
+    stays = apart and now["probability"] < _TURNED * left
+    turned = apart and not stays and max(was["probability"], now["probability"]) >= CLEAR
+    told = {**was, "probability": left} if stays else {**now, "time_utc": was["time_utc"]}
     first = before["at_alarm"] or {key: value for key, value in before.items() if key != "at_alarm"}
     return {
         **later,
         "time_utc": before["time_utc"],
         "ln_evidence": before["ln_evidence"],
         "at_alarm": first,
-        "verdicts": [*earlier, *([{**now, "time_utc": was["time_utc"]}] if same else [was, now])],
+        "verdicts": [*earlier, *([was, now] if turned else [told])],
     }
 
 
