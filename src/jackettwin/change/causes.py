@@ -497,10 +497,10 @@ def _cosine(one: Cause, other: Cause) -> float:
 
 
 def _clock() -> Cause:
-    """Return the cause of a wrong clock: all frequencies change alike, damping does not."""
+    """Return the cause of a wrong clock: all frequencies change alike, exactly so, damping does not."""
     sizes, weights = sizes_about(1e-3, 1.2, both_ways=True)
     direction = np.repeat([1.0, 0.0, 0.0], MODES)[None]
-    return Cause("sensor: clock", direction, sizes, weights, "-", prior=0.5)
+    return Cause("sensor: clock", direction, sizes, weights, "-", prior=0.5, misfit=0.0)
 
 
 def _yaw(frequency_hz: FloatArray, labels: Sequence[str], zeta: FloatArray) -> tuple[Cause, ...]:
