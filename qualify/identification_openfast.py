@@ -162,6 +162,7 @@ def views(record: Record, seed: int) -> dict[str, Record]:
     n, rms = record.data.shape[1], np.nanstd(record.data, axis=1, keepdims=True)
     noise = 0.02 * rms * np.random.default_rng((83, seed)).standard_normal(record.data.shape)
     part = int(n * 2 / 3)
+    lost = np.abs(np.arange(n) - 0.5 * n) < 0.1 * n
 
     def of(*rows: int) -> Record:
         return replace(record, data=record.data[list(rows)], channels=tuple(record.channels[k] for k in rows))
@@ -173,6 +174,7 @@ def views(record: Record, seed: int) -> dict[str, Record]:
         "noise of 2 % of every channel": replace(record, data=record.data + noise),
         "the first 400 s": replace(record, data=record.data[:, :part]),
         "the last 400 s": replace(record, data=record.data[:, part // 2 :]),
+        "all but 240 to 360 s": replace(record, data=np.where(lost, np.nan, record.data)),
     }
 
 

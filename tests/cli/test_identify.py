@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
-from jackettwin.cli.identify_tables import _print_findings, _print_methods, show_one
+from jackettwin.cli.identify_tables import _print_findings, _print_methods, _print_quality, show_one
 from jackettwin.findings import Finding
 from jackettwin.records import read_record, write_record
 
@@ -220,6 +220,24 @@ def test_setups_are_joined_before_the_identification(tmp_path: Path) -> None:
         code, _, err = run(*arguments, "--merge", "preger")
         assert code == 2
         assert "Traceback" not in err
+
+
+def test_what_several_setups_say_names_them_once(capsys: pytest.CaptureFixture[str]) -> None:
+    """It stood as "record, record", and the numbers of names as ranges: "acc_30 to 60m"."""
+    told = {"code": "file", "subject": None}
+    first, second = (f"read from the channel names: {m} m (acc_{m}m)" for m in (60, 30))
+    _print_quality([
+        {**told, "record": "a", "text": first},
+        {**told, "record": "a", "text": first},
+        {**told, "record": "b", "text": second},
+        {"code": "gaps", "subject": "acc_x", "text": "1.00% missing"},
+        {"code": "gaps", "subject": "acc_y", "text": "2.00% missing"},
+    ])  # fmt: skip
+    assert capsys.readouterr().out.splitlines() == [
+        f"quality: a: {first}",
+        f"quality: b: {second}",
+        "quality: acc_x, acc_y: 1.00 to 2.00% missing",
+    ]
 
 
 def test_a_method_that_does_not_know_a_damping_says_so(capsys: pytest.CaptureFixture[str]) -> None:

@@ -39,10 +39,11 @@ def _print_quality(findings: Iterable[Mapping[str, Any]]) -> None:
     """Print what was found in the record, once for all channels in which it differs in numbers only."""
     alike: dict[tuple[str, str], list[tuple[str, str]]] = {}
     for f in findings:
-        about = (f["code"], _NUMBER.sub("", f["text"]))
-        alike.setdefault(about, []).append((f["subject"] or "record", f["text"]))
+        # the numbers in what was read from names are parts of the names
+        about = (f["code"], f["text"] if f["code"] == "file" else _NUMBER.sub("", f["text"]))
+        alike.setdefault(about, []).append((f["subject"] or f.get("record", "record"), f["text"]))
     for group in alike.values():
-        names, texts = zip(*group, strict=True)
+        names, texts = zip(*dict.fromkeys(group), strict=True)
         more = " …" if len(names) > _SHOWN else ""
         say(f"quality: {', '.join(names[:_SHOWN])}{more}: {_spanned(texts)}")
 
