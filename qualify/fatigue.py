@@ -1,8 +1,9 @@
 """Does a twin with a few accelerometers know the stress at welds? Simulated jackets whose stresses are known.
 
-Of every asset feet (each another), damping, mass of the rotor, marine growth, drag and added mass are drawn,
-of every record wind, sea and the sensors' noise; the twin is told its turbine, state, mean wind and the sea's
-height, period and direction. It updates its feet with two records of its own; then four others are judged:
+Of every asset feet (each another), damping, stiffness and mass of its steel, mass of the rotor, marine
+growth, drag and added mass are drawn, of every record wind, sea and the sensors' noise; the twin is told its
+turbine, state, mean wind and the sea's height, period and direction. It updates its feet with two records
+of its own; then four others are judged:
 parked, idling, operating and in a storm. The truth is the simulation's own: section forces of its model with
 waves along the members. Beside the smoother stand modal expansion of accelerations that are integrated twice,
 the same in three bands, and an augmented Kalman filter with forces on the tower top that walk at random and
@@ -18,6 +19,7 @@ import sys
 import tempfile
 from dataclasses import replace
 from functools import partial
+from importlib.resources import files
 from pathlib import Path
 from time import process_time
 from typing import Any, NamedTuple
@@ -37,7 +39,6 @@ from jackettwin.records import Record, write_record
 from jackettwin.response import Sensor, System, observation_matrix
 from jackettwin.sensing import (
     SECTION_REMAINDER,
-    STRESS_REMAINDER,
     LatentForce,
     MotionEstimate,
     MotionModel,
@@ -49,6 +50,7 @@ from jackettwin.sensing import (
     readings_of,
     section_rows,
     sensed_model,
+    stress_remainder,
 )
 from jackettwin.simulate import Scenario, read_scenario, simulate
 from jackettwin.simulate.members import deflections
@@ -90,6 +92,7 @@ METHODS = (
 )
 STATES = ("parked", "idling", "operating", "storm, parked")
 """Of the records of each asset."""
+DRAWINGS = files("jackettwin") / "data" / "structures" / "jacket15.yaml"
 FEET = {"k": {"median": 1.2e9, "log_std": 1.0}, "c": {"median": 2.5e7, "log_std": 1.0}}
 """What a pile's design says of its head, to a factor of e."""
 ROTOR = RotorByWind(*read_rotor("iea15"), 0.17)
@@ -111,7 +114,7 @@ def asset(number: int) -> dict[str, Any]:
         }
         for node in read_structure("jacket15").reaction_nodes
     ]
-    return {
+    drawn = {
         "feet": {"supports": feet},
         "rna": _rna(mass),
         "damping": {"rayleigh": {"ratio": float(rng.uniform(0.003, 0.01)), "frequency_hz": 0.3}},
@@ -123,6 +126,22 @@ def asset(number: int) -> dict[str, Any]:
         },
         "noise": float(10 ** rng.uniform(-4.0, -3.0)),
     }
+    return drawn | {"steel": steel(rng)}
+
+
+def steel(rng: np.random.Generator) -> dict[str, Any]:
+    """Draw what the drawings do not tell of stiffness and mass, as the twin's tolerances have it."""
+    found: dict[str, Any] = yaml.safe_load(DRAWINGS.read_text())
+    for part, stiffer, heavier in (
+        ("lattice", 0.015, 0.02),
+        ("transition_piece", 0.1, 0.02),
+        ("tower", 0.015, 0.01),
+    ):
+        material = found["jacket"][part]["material"]
+        # YAML reads 2.1e11 as text
+        for name, std in (("youngs_modulus_pa", stiffer), ("density_kg_m3", heavier)):
+            material[name] = float(material[name]) * float(np.exp(std * rng.standard_normal()))
+    return found
 
 
 def weather(case: int) -> tuple[str, dict[str, Any]]:
@@ -156,6 +175,7 @@ def write_scenario(folder: Path, case: int) -> Path:
     """Write the scenario of a record, and the feet that it names."""
     drawing = asset(abs(case) // 10 if case < 0 else case // len(STATES))
     (folder / "feet.yaml").write_text(yaml.safe_dump(drawing.pop("feet")))
+    (folder / "steel.yaml").write_text(yaml.safe_dump(drawing.pop("steel")))
     noise = drawing.pop("noise")
     sensors = [
         {"channel": f"acc_{h:.0f}_{axis}", "height_m": h, "direction": d, "noise": noise}
@@ -163,7 +183,7 @@ def write_scenario(folder: Path, case: int) -> Path:
         for axis, d in (("x", [1, 0, 0]), ("y", [0, 1, 0]))
     ]
     scenario = {
-        "structure": "jacket15",
+        "structure": str(folder / "steel.yaml"),
         "gravity": True,
         "support": str(folder / "feet.yaml"),
         "time": {"duration_s": 600.0, "step_s": STEP_S, "discard_s": 60.0},
@@ -417,7 +437,8 @@ def judged(case: int) -> Result:
     smoother_s = process_time() - start
     draws = np.log(np.array(every))
     z = [_height(j, first, judges[0]) for j, _, _, _ in wanted]
-    remainder = np.array([SECTION_REMAINDER] * 6 + [STRESS_REMAINDER] * len(z))
+    left = [stress_remainder(at, working=sea.working) for at in z]
+    remainder = np.array([SECTION_REMAINDER] * 6 + left)
     within = draws.var(axis=1, ddof=1).mean(axis=0)
     between = draws.mean(axis=1).var(axis=0, ddof=1)
     std = np.sqrt(within + np.maximum(between - within / DRAWS, 0.0) + remainder**2)
@@ -536,8 +557,8 @@ def introduction(n: int, lost: int) -> list[str]:
         "# Stress at welds from a few accelerometers",
         "",
         f"`python qualify/fatigue.py {' '.join(sys.argv[1:])}`: {n} simulated ten-minute records of "
-        f"{-(-n // len(STATES))} assets like jacket15; feet, damping, mass, growth, coefficients of the "
-        "water and weather are drawn and unknown to "
+        f"{-(-n // len(STATES))} assets like jacket15; feet, damping, steel, mass, growth, coefficients "
+        "of the water and weather are drawn and unknown to "
         "the twin but for mean wind and sea. It updates its feet with two other records of the "
         f"asset{f' ({lost} records gave no result and are left out)' if lost else ''}.",
         f"Damage-equivalent range (m = {M:g}) over the true one, less one, in per cent: median (5 to 95 % of "

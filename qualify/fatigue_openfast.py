@@ -45,13 +45,13 @@ from jackettwin.records import Channel, Record
 from jackettwin.response import Sensor, observation_matrix
 from jackettwin.sensing import (
     SECTION_REMAINDER,
-    STRESS_REMAINDER,
     MotionModel,
     RotorByWind,
     Weather as KnownWeather,
     likely_motions,
     readings_of,
     section_rows,
+    stress_remainder,
 )
 from jackettwin.structure import Rayleigh, Structure, assemble
 from jackettwin.twin import LifeSettings, RestingLoads, StressModel
@@ -175,7 +175,11 @@ def of_record(
     logs = np.log(np.array(draws))
     within = logs.var(axis=1, ddof=1).mean(axis=0)
     between = np.maximum(logs.mean(axis=1).var(axis=0, ddof=1) - within / DRAWS, 0.0)
-    remainder = np.array([SECTION_REMAINDER] * 2 + [STRESS_REMAINDER] * len(leg_starts(structure)))
+    left = [
+        stress_remainder(structure.nodes[node][2] - structure.sea_level_z_m, working=weather.working)
+        for node in leg_starts(structure)
+    ]
+    remainder = np.array([SECTION_REMAINDER] * 2 + left)
     mean = logs.mean(axis=(0, 1))
     std = np.sqrt(within + between + remainder**2)
     return np.exp(mean) / true, (np.log(true) - mean) / std, std

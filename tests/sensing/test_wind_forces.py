@@ -49,7 +49,7 @@ def test_wind_acts_at_the_hub_and_on_the_tower(assembly: Assembly) -> None:
     drag = forces["tower y"].load @ rigid[:, :3]
     assert drag[1] > 0.0
     assert abs(drag[0]) < 1e-9 * drag[1]
-    assert forces["tower y, quick"].rate == pytest.approx(25.0 * forces["tower y"].rate)
+    assert forces["tower y, quick"].rate == pytest.approx(40.0 * forces["tower y"].rate)
     faster = wind_forces(assembly, place, wind_m_s=24.0)[0]
     assert faster.rate == pytest.approx(2.0 * forces["rotor Fx"].rate)
 
@@ -78,22 +78,31 @@ def test_a_disc_averages_forces_and_not_moments(
 
 @pytest.mark.parametrize("wind", [8.0, 14.0, 22.0])
 def test_a_standing_rotor_bears_the_short_gusts_across(assembly: Assembly, wind: float) -> None:
-    """Lift of v and w along three feathered blades, whose scales are 2.7 and 0.66 Λ₁ (table C.1)."""
+    """Lift of v and w along three feathered blades, whose scales are 2.7 and 0.66 Λ₁ (table C.1).
+
+    The standard has no coherence of theirs: that of u, and none between cells of 19 m, are both within two
+    deviations of what is expected.
+    """
     psi, r = np.repeat(2.0 * np.pi * np.arange(3) / 3, 12), np.tile((np.arange(12) + 0.5) / 12 * RADIUS, 3)
     at, across = (
         r[:, None] * np.column_stack([np.sin(psi), np.cos(psi)]),
         np.column_stack([np.cos(psi), -np.sin(psi)]),
     )
     f = np.geomspace(1.0 / 600.0, 0.5, 25)
-    joined = coherence(f, wind, np.linalg.norm(at[:, None] - at[None], axis=2))
+    cell = np.round(at / 19.1)
+    alike = (cell[:, None] == cell[None]).all(axis=2) * np.ones((f.size, 1, 1))
     forces = {g.name: g for g in wind_forces(assembly, AT_TOP, wind_m_s=wind)}
-    for name, lever in (("rotor Fy", across[:, 0]), ("rotor Mx", r)):
-        S = sum(
-            ratio**2 * kaimal(f, wind, scale * 42.0) * np.einsum("i,fij,j->f", g, joined, g)
-            for ratio, scale, g in zip((0.8, 0.5), (2.7, 0.66), (lever[:, None] * across).T, strict=True)
-        )
-        assert off(forces[name], f, S) < 0.3
-        assert off(forces["tower x"], f, S) > off(forces[name], f, S) + 0.05
+    for joined in (coherence(f, wind, np.linalg.norm(at[:, None] - at[None], axis=2)), alike):
+        for name, lever in (("rotor Fy", across[:, 0]), ("rotor Mx", r)):
+            S = sum(
+                ratio**2 * kaimal(f, wind, scale * 42.0) * np.einsum("i,fij,j->f", g, joined, g)
+                for ratio, scale, g in zip((0.8, 0.5), (2.7, 0.66), (lever[:, None] * across).T, strict=True)
+            )
+            one = forces[name]
+            away = one.rate_log_std * np.linspace(-2.0, 2.0, 41)
+            errors = [off(one.with_level(1.0, one.rate * np.exp(a)), f, S) for a in away]
+            assert min(errors) < 0.45 and 0 < np.argmin(errors) < away.size - 1
+            assert off(forces["tower x"], f, S) > min(errors) + 0.05
     quick = {name.partition(",")[0] for name in forces if "rotor" in name and "quick" in name}
     assert quick == {"rotor Fx", "rotor Fy", "rotor Mx", "rotor My"}  # no sensor on the axis sees Mz
 

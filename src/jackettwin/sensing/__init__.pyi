@@ -1,6 +1,5 @@
 from .estimate import (
     SECTION_REMAINDER as SECTION_REMAINDER,
-    STRESS_REMAINDER as STRESS_REMAINDER,
     MotionEstimate as MotionEstimate,
     estimate_motion as estimate_motion,
     likely_motions as likely_motions,
@@ -8,6 +7,7 @@ from .estimate import (
     section_rows as section_rows,
     sensed_model as sensed_model,
     spread_of as spread_of,
+    stress_remainder as stress_remainder,
 )
 from .latent_forces import LatentForce as LatentForce
 from .motion_model import MotionModel as MotionModel, motion_model as motion_model

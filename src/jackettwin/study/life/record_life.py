@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -26,13 +27,13 @@ from jackettwin.fatigue import (
 from jackettwin.records import assess, read_record, repair, to_global_axes, with_conditions
 from jackettwin.response import System
 from jackettwin.sensing import (
-    STRESS_REMAINDER,
     MotionEstimate,
     SensorReadings,
     Weather,
     likely_motions,
     readings_of,
     section_rows,
+    stress_remainder,
 )
 from jackettwin.study.life.updated_system import updated_systems
 from jackettwin.twin import (
@@ -167,7 +168,8 @@ def record_life(
     every = [chart.cycles(motion) for chart, own in zip(charts, motions, strict=True) for motion in own]
     duration = readings.y.shape[1] * readings.step_s
     structure = estimate.model.assembly.structure
-    curves = [models(structure.nodes[w.node][2] - structure.sea_level_z_m)[1].curve for w in welds]
+    above = [structure.nodes[w.node][2] - structure.sea_level_z_m for w in welds]
+    curves, left = [models(z)[1].curve for z in above], partial(stress_remainder, working=weather.working)
     damages = np.array(
         [
             [
@@ -181,13 +183,16 @@ def record_life(
         ]
     )
     by_system = damages.reshape(len(systems), -1, *damages.shape[1:])
-    others = [_variances(by_system[:, :, i], curve) for i, curve in enumerate(curves)]
+    others = [
+        _variances(by_system[:, :, i], curve, left(z))
+        for i, (curve, z) in enumerate(zip(curves, above, strict=True))
+    ]
     cycles = [
         [[_all_of([one[i][s][p] for one in every]) for p in range(len(POSITIONS))] for s in range(len(SIDES))]
         for i in range(len(welds))
     ]
     lives = weld_lives(structure, welds, cycles, duration, models, times=len(every), others=others)
-    tubes, apart = _tubes(estimates, motions, details, duration)
+    tubes, apart = _tubes(estimates, motions, details, duration, left)
     return RecordLife(lives, tubes, apart, estimate, charts[0], duration)
 
 
@@ -196,8 +201,14 @@ def _tubes(
     motions: Sequence[Sequence[FloatArray]],
     details: TubeDetails | None,
     duration_s: float,
+    left: Callable[[float], float],
 ) -> tuple[tuple[TubeLife, ...], tuple[str, ...]]:
-    """Return the life of the welds around tubes in motions of every structure."""
+    """Return the life of the welds around tubes in motions of every structure.
+
+    Parameters
+    ----------
+    left : from an elevation above the sea [m] to what no motion covers of ln of ranges
+    """
     if details is None:
         return (), ()
     every: list[list[list[Cycles]]] = []
@@ -207,13 +218,13 @@ def _tubes(
         rows = [weld.stress(moving) for weld in welds]
         every += [[[count(series) for series in row @ motion.T] for row in rows] for motion in own]
     structure = estimates[0].model.assembly.structure
-    curves = [weld.models(weld.z_m - structure.sea_level_z_m)[1].curve for weld in welds]
     others, cycles = [], []
-    for i, (weld, curve) in enumerate(zip(welds, curves, strict=True)):
-        t = weld.section.thickness_m
+    for i, weld in enumerate(welds):
+        above, t = weld.z_m - structure.sea_level_z_m, weld.section.thickness_m
+        curve = weld.models(above)[1].curve
         damages = [[curve.damage(c.ranges, c.numbers, thickness_m=t) for c in one[i]] for one in every]
         by_system = np.array(damages).reshape(len(estimates), -1, len(POSITIONS))
-        others.append(_variances(by_system, curve))
+        others.append(_variances(by_system, curve, left(above)))
         cycles.append([_all_of([one[i][p] for one in every]) for p in range(len(POSITIONS))])
     return tube_lives(structure, welds, cycles, duration_s, times=len(every), others=others), apart
 
@@ -222,17 +233,21 @@ def _all_of(cycles: list[Cycles]) -> Cycles:
     return Cycles(np.concatenate([c.full for c in cycles]), np.concatenate([c.half for c in cycles]))
 
 
-def _variances(damage: FloatArray, curve: SNCurve) -> dict[str, FloatArray]:
-    """Return the variance of ln D (…, 8) by source, from damages (n_systems, n_draws, …, 8)."""
+def _variances(damage: FloatArray, curve: SNCurve, left: float) -> dict[str, FloatArray]:
+    """Return the variance of ln D (…, 8) by source, from damages (n_systems, n_draws, …, 8).
+
+    Parameters
+    ----------
+    left : standard deviation of ln of ranges that no draw covers
+    """
     with np.errstate(divide="ignore"):
         logs = np.log(np.maximum(damage, 1e-300))
     within = logs.var(axis=1, ddof=1).mean(axis=0) if logs.shape[1] > 1 else np.zeros(logs.shape[2:])
     means = np.log(np.maximum(damage.mean(axis=1), 1e-300))
     between = means.var(axis=0, ddof=1) if len(means) > 1 else np.zeros(means.shape[1:])
     beyond = np.maximum(between - within / damage.shape[1], 0.0)
-    left = np.full(within.shape, (float(np.mean(curve.m)) * STRESS_REMAINDER) ** 2)
     return {
         "what sensors do not see": within,
         "structure and force levels": beyond,
-        "simplified waves and modes": left,
+        "simplified waves and modes": np.full(within.shape, (float(np.mean(curve.m)) * left) ** 2),
     }

@@ -8,7 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import AnyFloatArray, FloatArray, IntArray
 from jackettwin.fatigue import POSITIONS, SIDES, LifeModel, count
-from jackettwin.sensing import STRESS_REMAINDER, MotionEstimate, SensorReadings, Weather, likely_motions
+from jackettwin.sensing import MotionEstimate, SensorReadings, Weather, likely_motions, stress_remainder
 from jackettwin.twin.life.likely_structures import LikelyStructures, StressModel
 from jackettwin.twin.life.weld_map import WeldMap, weld_map
 
@@ -85,7 +85,7 @@ def sensed_damage(
     told = likely.model
     rest = told.rest.under(weather, told.assembly)
     chart = weld_map(systems[0], estimates[0].model, rest, told.joints, tubes=told.tubes)
-    curves = _Curves.of(told)
+    curves = _Curves.of(told, working=weather.working)
     mean = estimates[0].mean()
     sides, guessed, largest_left = curves.worst(chart, mean, estimates[0].covariance)
     first = curves.damage(chart, mean, sides)
@@ -156,14 +156,18 @@ class _Curves:
     remainder: FloatArray
 
     @classmethod
-    def of(cls, told: StressModel) -> _Curves:
-        """Return those of a structure's welds."""
+    def of(cls, told: StressModel, *, working: bool) -> _Curves:
+        """Return those of a structure's welds; more is left open of them while its rotor works."""
         structure = told.assembly.structure
         welds = [weld for joint in told.joints for weld in joint.welds]
         sides = [(structure.nodes[w.node][2], t, told.curves) for w in welds for t in w.thickness_m]
         sides += [(tube.z_m, tube.section.thickness_m, tube.models) for tube in told.tubes]
-        at = [curves(z - structure.sea_level_z_m)[1] for z, _, curves in sides]
-        left = [STRESS_REMAINDER * float(np.mean(m.curve.m)) for m in at]
+        above = [z - structure.sea_level_z_m for z, _, _ in sides]
+        at = [curves(z)[1] for z, (_, _, curves) in zip(above, sides, strict=True)]
+        left = [
+            stress_remainder(z, working=working) * float(np.mean(m.curve.m))
+            for z, m in zip(above, at, strict=True)
+        ]
         joint = np.repeat(np.arange(len(told.joints)), [len(j.welds) for j in told.joints])
         return cls(tuple(at), np.array([t for _, t, _ in sides]), joint, np.array(left))
 
