@@ -14,6 +14,8 @@ NORMAL_90 = 1.6448536269514722
 """Half a central 90 % interval of a normal distribution, in standard deviations."""
 NORMAL_95 = 1.959963984540054
 """The same of 95 %: for tests with one false alarm in twenty, and for what others state."""
+NORMAL_OF_MAD = 1.4826
+"""Standard deviation of a normal distribution over its median absolute deviation, 1/Φ⁻¹(3/4)."""
 MOST = 50.0
 """Logarithm beyond which an interval says nothing, and its ends would overflow."""
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from jackettwin.constants import YEAR_S
 from jackettwin.decks import read_structure
-from jackettwin.fatigue import YEAR_S
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.study import LIFE_SO_FAR, LifeSoFar, asset_life
 from jackettwin.twin import DAMAGE_UNIT, Day, LifeSettings, RestingLoads, SensedTime, StressModel, WeldSums

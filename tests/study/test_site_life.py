@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 import yaml
 
+from jackettwin.constants import YEAR_S
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.fatigue import (
-    YEAR_S,
     Cycles,
     RemainingLife,
     WeldLife,

@@ -19,6 +19,7 @@ from jackettwin.answers.result import (
     Span,
 )
 from jackettwin.arrays import FloatArray
+from jackettwin.constants import DAY_S
 from jackettwin.intervals import NORMAL_90, interval_90
 from jackettwin.soil import Parameter, families, law_parameter
 from jackettwin.study import MeasuredMode, Scrutiny, TwinResult
@@ -44,7 +45,7 @@ def answer(result: TwinResult) -> Answers:
     u = recommended(result.updates)
     laws, source = _laws(result.updates)
     number, seconds = result.extent
-    days = seconds / 86400.0
+    days = seconds / DAY_S
     ground = () if u is None else tuple(_ground(u))
     open_ = [g.name for g in ground if g.verdict in ("weak", "unidentified")]
     speed = result.rotor_speed_hz

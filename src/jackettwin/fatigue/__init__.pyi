@@ -19,7 +19,7 @@ from .efthymiou import (
 from .environment import models_at_height as models_at_height
 from .hot_spots import POSITIONS as POSITIONS, SIDES as SIDES, hot_spot_matrix as hot_spot_matrix
 from .joint_life import HotSpot as HotSpot, JointStresses as JointStresses, joint_stresses as joint_stresses
-from .life import YEAR_S as YEAR_S, LifeModel as LifeModel, SpotLife as SpotLife
+from .life import LifeModel as LifeModel, SpotLife as SpotLife
 from .remaining_life import RemainingLife as RemainingLife
 from .spectral import dirlik as dirlik, tovo_benasciutti as tovo_benasciutti
 from .strain import (

@@ -17,11 +17,10 @@ from math import exp, log, sqrt
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.constants import YEAR_S
 from jackettwin.fatigue.curves import SNCurve
 from jackettwin.fatigue.cycles import Cycles
 from jackettwin.intervals import NORMAL_90
-
-YEAR_S = 365.25 * 86400.0
 
 
 @dataclass(frozen=True)

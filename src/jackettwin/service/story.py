@@ -17,6 +17,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.change import Ground
+from jackettwin.constants import DAY_S, YEAR_DAYS
 from jackettwin.files import digest
 from jackettwin.identification import (
     Identification,
@@ -115,7 +116,7 @@ def _weather(rng: np.random.Generator, until: date) -> Iterator[DayWeather]:
     for day in range(DAYS):
         wind = 0.6 * wind + 2.0 * rng.standard_normal()
         air = 0.8 * air + 0.9 * rng.standard_normal()
-        winter = sin(2.0 * pi * (first + day + 75) / 365.25)  # most in the middle of January
+        winter = sin(2.0 * pi * (first + day + 75) / YEAR_DAYS)  # most in the middle of January
         v = 24.0 if day == STORM else float(np.clip(10.0 + 1.5 * winter + wind, 3.0, 21.0))
         yield DayWeather(
             wind_m_s=v,
@@ -153,7 +154,7 @@ def _observation(
         stabilisation=Stabilisation.none(1),
         spectrum=Spectrum(np.empty(0), np.empty((1, 0)), np.empty((1, 0))),
         settings=ResolvedSettings(0.1, 2.0, 5.0, 20, (2, 4), 8.0),
-        duration_s=86_400.0,
+        duration_s=DAY_S,
     )
     conditions = {
         "simulated": "a day of the demonstration that nobody measured; the mean of 144 records",

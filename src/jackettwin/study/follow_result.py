@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.constants import DAY_S
 from jackettwin.errors import InputError, located
 from jackettwin.files import StoredSchema
 from jackettwin.soil import parameter_words
@@ -25,7 +26,6 @@ FEWEST_DAYS = 3
 """Days with data that the estimate of a drift needs."""
 STIFFNESS = "N/m"
 """Unit of the parameters that may drift."""
-SECONDS_A_DAY = 86400.0
 _BLIND = 100.0
 """Smallest detectable drift in per cent a day above which no statement on drift is made."""
 
@@ -220,7 +220,7 @@ def day_utc(day: float) -> datetime:
 
 def since_first(times: Sequence[datetime]) -> FloatArray:
     """Return times since the first [d], (n_times,)."""
-    return np.array([(time - times[0]).total_seconds() / SECONDS_A_DAY for time in times])
+    return np.array([(time - times[0]).total_seconds() / DAY_S for time in times])
 
 
 FOLLOWED = StoredSchema("followed", Followed)

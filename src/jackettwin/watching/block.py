@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
+from jackettwin.intervals import NORMAL_OF_MAD
 from jackettwin.watching.design import Design, Slope
 from jackettwin.watching.directions import Directions, log_bayes_factors
 from jackettwin.watching.history import (
@@ -30,7 +31,6 @@ _LEAST_STD, _MOST_STD = 0.3, 5.0
 """Limits of stated standard deviations, as factors of their median."""
 BROAD = {"frequency": 0.03, "damping": 0.5, "angle": 0.5}
 """Prior standard deviation of a change, given that there is one."""
-_MAD = 1.4826
 _NEGLIGIBLE = -20.0
 """Logarithm of the weight below which a model is not evaluated."""
 _NO_WEIGHT = -1e9
@@ -224,7 +224,7 @@ def _usual_std(
 
 
 def _robust(x: FloatArray) -> float:
-    return max(float(_MAD * np.median(np.abs(x - np.median(x)))), 1e-9)
+    return max(float(NORMAL_OF_MAD * np.median(np.abs(x - np.median(x)))), 1e-9)
 
 
 def _variance(relative: FloatArray, usual: FloatArray) -> FloatArray:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
+from jackettwin.constants import YEAR_DAYS
 from jackettwin.watching.history import History
 
 LAGS_DAYS = (0.25, 1.5)
@@ -31,8 +32,8 @@ _FEWEST_COLD = 0.02
 soil or asphalt."""
 _FEWEST_OF_STATE = 50
 """Fewest rows of an operating state for its own slopes, and for an intercept."""
-YEAR_DAYS, WHOLE_YEAR_DAYS = 365.25, 330.0
-"""Length of a year, and of a baseline from which the time of year replaces a missing temperature [days]."""
+WHOLE_YEAR_DAYS = 330.0
+"""Length of a baseline from which the time of year replaces a missing temperature [days]."""
 _CURVED, _LINEAR, _LEVEL, _SLOW = 0.5, 1.0, 20.0, 0.3
 """Prior standard deviations of coefficients, in standard deviations of the quantity over the baseline.
 A linear term may explain all of it, a quadratic one half, a slow one a third; the intercept is unknown."""

@@ -25,9 +25,10 @@ import numpy as np
 from scipy.stats import f as f_distribution, norm
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
+from jackettwin.constants import YEAR_DAYS
 from jackettwin.watching.block import Block, scatter_freedom
 from jackettwin.watching.day_parts import INSIDE
-from jackettwin.watching.design import YEAR_DAYS, regressors
+from jackettwin.watching.design import regressors
 from jackettwin.watching.detectable import informed, replayed
 from jackettwin.watching.directions import SHARES, Directions
 from jackettwin.watching.history import History

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.constants import YEAR_DAYS
 from jackettwin.watching.block import Block
-from jackettwin.watching.design import YEAR_DAYS, Design, Lagged
+from jackettwin.watching.design import Design, Lagged
 from jackettwin.watching.directions import SHARES
 from jackettwin.watching.history import Kind
 

@@ -19,6 +19,7 @@ from scipy.special import bdtrc
 from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 from jackettwin.findings import Finding
 from jackettwin.identification.status import ModeStatus
+from jackettwin.intervals import NORMAL_OF_MAD
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -118,7 +119,7 @@ def _columns(tracks: Sequence[Sightings]) -> _All:
 def _is_settled(log_f: FloatArray, n_records: int) -> bool:
     if log_f.size < max(SETTLED_SHARE * n_records, FEWEST):
         return False
-    return float(1.4826 * np.median(np.abs(log_f - np.median(log_f)))) < SETTLED_SPREAD
+    return float(NORMAL_OF_MAD * np.median(np.abs(log_f - np.median(log_f)))) < SETTLED_SPREAD
 
 
 def _sweep(log_f: FloatArray) -> float:

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.intervals import NORMAL_OF_MAD
 
 SIGMAS = 6.0
 """Change in standard deviations of the scatter between windows above which it is a jump."""
@@ -42,7 +43,7 @@ def scatter(series: FloatArray) -> FloatArray:
     """
     changes = np.diff(series, axis=0)
     spread = np.median(np.abs(changes - np.median(changes, axis=0)), axis=0)
-    return np.asarray(1.4826 * spread / np.sqrt(2.0))
+    return np.asarray(NORMAL_OF_MAD * spread / np.sqrt(2.0))
 
 
 def lines(series: FloatArray) -> tuple[FloatArray, FloatArray]:

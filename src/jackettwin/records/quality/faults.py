@@ -15,6 +15,7 @@ from scipy.special import ndtri
 
 from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 from jackettwin.findings import Finding
+from jackettwin.intervals import NORMAL_OF_MAD
 from jackettwin.records.processing.filters import bridge
 from jackettwin.records.record import SMALLEST
 
@@ -50,7 +51,7 @@ MAX_UNSTEADINESS = 1e9
 
 MAX_LEVELS = 64
 """Most levels of a coarsely quantised channel."""
-ROUNDING = 1.0 / (1.4826 * np.sqrt(12.0))
+ROUNDING = 1.0 / (NORMAL_OF_MAD * np.sqrt(12.0))
 """Scatter of rounding errors over the quantisation step, as a median departure."""
 MIN_SAMPLES_PER_LEVEL = 20
 """Fewest samples per level; with fewer, a channel may have few levels by chance."""
@@ -117,9 +118,9 @@ def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
     usual = np.maximum(usual, rounding)
     quartiles = np.percentile(y[finite], [25.0, 75.0])
     least = max(float(quartiles[1] - quartiles[0]) / 1.349, 1e-12 * float(np.ptp(y[finite])))
-    far: BoolArray = finite & (departure > np.maximum(SPIKE_SIGMAS * 1.4826 * usual, least))
+    far: BoolArray = finite & (departure > np.maximum(SPIKE_SIGMAS * NORMAL_OF_MAD * usual, least))
     at = np.flatnonzero(far)
-    far[at] = departure[at] > CREST_SIGMAS * 1.4826 * np.maximum(_spread_around(x, at, hold), rounding)
+    far[at] = departure[at] > CREST_SIGMAS * NORMAL_OF_MAD * np.maximum(_spread_around(x, at, hold), rounding)
     return far
 
 

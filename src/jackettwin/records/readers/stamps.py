@@ -15,6 +15,7 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
+from jackettwin.constants import DAY_S
 from jackettwin.errors import InputError, require
 
 if TYPE_CHECKING:
@@ -41,7 +42,6 @@ _YEAR_LAST = re.compile(r"^(\d\d?)[./](\d\d?)[./](\d{4})")
 _MONTH_FIRST = re.compile(rf"\d\d?/{_NO_MONTH}/")
 _AMBIGUOUS = re.compile(r"\s*(?P<first>\d\d?)/(?P<second>\d\d?)/(?P<year>\d{4})(?!\d)")
 _PLAIN_STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:[.,]\d{1,9})?)?[Zz]?")
-_DAY_S = 86_400.0
 
 
 def is_stamp(cell: str) -> bool:
@@ -160,8 +160,8 @@ def _of_day(cells: Sequence[str], line: int) -> npt.NDArray[np.timedelta64]:
         cells = [_of_whole_day(cell.strip()) for cell in cells]
     parts = np.array([cell.replace(",", ".").split(":") for cell in cells], np.float64)
     seconds = parts @ [3600.0, 60.0, 1.0]
-    nights = np.cumsum(np.diff(seconds, prepend=seconds[0]) < -0.5 * _DAY_S)
-    return np.round(1e9 * (seconds + _DAY_S * nights)).astype("timedelta64[ns]")
+    nights = np.cumsum(np.diff(seconds, prepend=seconds[0]) < -0.5 * DAY_S)
+    return np.round(1e9 * (seconds + DAY_S * nights)).astype("timedelta64[ns]")
 
 
 def _stamp(text: str, cell: str, line: int) -> np.datetime64:
@@ -209,7 +209,7 @@ def dates_of_days(numbers: FloatArray) -> npt.NDArray[np.datetime64] | None:
     if zero is None or zero != last or not 0.0 < high - low < _LONGEST_STEP * (numbers.size - 1):
         return None
     days = np.floor(numbers)
-    nanoseconds = np.round((numbers - days) * _DAY_S * 1e9).astype("timedelta64[ns]")
+    nanoseconds = np.round((numbers - days) * DAY_S * 1e9).astype("timedelta64[ns]")
     return np.asarray((zero + days.astype("timedelta64[D]")).astype("datetime64[ns]") + nanoseconds)
 
 

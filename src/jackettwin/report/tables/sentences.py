@@ -8,6 +8,7 @@ from math import expm1, log
 
 from jackettwin.answers import Answers, GroundAnswer, ModeAnswer, Span
 from jackettwin.answers.result import Clearance, NextStep
+from jackettwin.constants import YEAR_DAYS
 from jackettwin.report.tables.numbers import UNKNOWN, between, count, factor, listed, rounded_percent, words
 from jackettwin.report.tables.sentences_fit import fit_sentence, mend, misfit_headline, value_words
 from jackettwin.report.tables.sentences_model import (
@@ -724,5 +725,5 @@ def _records(a: Answers, step: NextStep) -> str:
     if _enough(a, step):
         return f"record {length} in the same way ({round(times * a.records)} records instead of {a.records})"
     if days > _LONG_DAYS:
-        length = f"{_LONG_DAYS / 365.25:.0f} years"
+        length = f"{_LONG_DAYS / YEAR_DAYS:.0f} years"
     return f"more records alone do not determine it, not even {length} of records"

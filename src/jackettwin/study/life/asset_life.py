@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from jackettwin.constants import YEAR_DAYS, YEAR_S
 from jackettwin.fatigue import POSITIONS, SIDES, TUBE_POSITIONS, HotSpot, RemainingLife, TubeWeld
 from jackettwin.findings import Finding
 from jackettwin.intervals import NORMAL_90, QUANTILES
@@ -17,8 +18,6 @@ from jackettwin.structure import Structure
 from jackettwin.study.life.life_so_far import LifeSoFar, damage_of_year
 from jackettwin.study.life.shares import BLOCK_DAYS, LAST
 from jackettwin.twin import DAMAGE_UNIT, SensedTime, StressModel, WeldSums, planned_joints
-
-_DAYS_A_YEAR = 365.25
 
 
 @dataclass(frozen=True)
@@ -89,7 +88,7 @@ class AssetLife:
         structure, sums, weld, settings = (
             self.model.assembly.structure, one.sums, one.weld, self.model.settings,
         )  # fmt: skip
-        total, years = sum(one.variances.values()), self.time.seconds / (_DAYS_A_YEAR * 86400.0)
+        total, years = sum(one.variances.values()), self.time.seconds / YEAR_S
         median, spread = one.remaining.rate * years, exp(NORMAL_90 * sqrt(total))
         low, mid, high = (one.remaining.quantile(p) for p in QUANTILES)
         left_out = (self.time.n - sums.n) / self.time.n * self.time.beyond
@@ -172,10 +171,10 @@ def _age_years(model: StressModel, so_far: LifeSoFar, time: SensedTime) -> float
     """Return for how long damage has been done: since the start of service, else since the first record."""
     began = model.settings.in_service
     if not so_far.through:
-        return time.seconds / (_DAYS_A_YEAR * 86400.0)
+        return time.seconds / YEAR_S
     last = date.fromisoformat(so_far.through).toordinal() + 1
     first = date.fromisoformat(so_far.first).toordinal() if began is None else began.toordinal()
-    return max(last - first, 1) / _DAYS_A_YEAR
+    return max(last - first, 1) / YEAR_DAYS
 
 
 def _place(structure: Structure, weld: HotSpot | TubeWeld) -> dict[str, Any]:

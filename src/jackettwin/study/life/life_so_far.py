@@ -14,7 +14,7 @@ from datetime import date
 from math import exp, sqrt
 from typing import Any
 
-from jackettwin.fatigue import YEAR_S
+from jackettwin.constants import YEAR_S
 from jackettwin.files import StoredSchema
 from jackettwin.intervals import NORMAL_90
 from jackettwin.study.life.shares import BLOCK_DAYS, ShareBlock, ShareTrack

@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.constants import YEAR_S
 from jackettwin.errors import require
-from jackettwin.fatigue import POSITIONS, YEAR_S, ModelsAtHeight, RemainingLife, TubeDetails, WeldLife
+from jackettwin.fatigue import POSITIONS, ModelsAtHeight, RemainingLife, TubeDetails, WeldLife
 from jackettwin.intervals import NORMAL_90
 from jackettwin.response import System
 from jackettwin.simulate import scenario_from, scenario_life
