@@ -84,6 +84,7 @@ def test_mass_at_the_top_does_what_rayleighs_quotient_says(model: ModelCauses) -
 
 def test_a_clock_moves_all_frequencies_and_no_damping(model: ModelCauses) -> None:
     assert direction(model, "sensor: clock").tolist() == [1.0] * MODES + [0.0] * (2 * MODES)
+    assert [c.misfit for c in model.causes if c.name == "sensor: clock"] == [0.0]  # it is no model's
     assert "sensor: gain" in model.traceless
 
 

@@ -87,6 +87,9 @@ def test_two_causes_that_stay_about_equal_do_not_correct_each_other() -> None:
         (one,) = found["verdicts"]
         assert (one["cause"], one["probability"]) == ("again", again)
     assert likeliest(found) == "cause not clear: mass (60 %), again (40 %)"
+    one = look("2025-03-01", 0.86)
+    assert likeliest({**one, "explained": 0.03}) == likeliest(one) == "most likely again (86 %)"
+    assert likeliest({**one, "explained": 0.01}).endswith("perhaps more than one change")
     found = with_later_look(found, look("2025-03-09", 0.2))
     was, now = found["verdicts"]
     assert (was["cause"], now["cause"], now["time_utc"]) == ("again", "mass", "2025-03-09")

@@ -3,6 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
+from scipy.special import erfc
 from scipy.stats import multivariate_normal
 
 from jackettwin.watching.causes import Cause, sensor_noise, sizes_about
@@ -17,6 +19,7 @@ from jackettwin.watching.diagnosis import (
     _misfit,
     _moved,
     diagnose,
+    explained_share,
 )
 
 KINDS = ("frequency", "damping", "frequency")
@@ -92,6 +95,22 @@ def test_a_direction_may_miss_by_more_than_is_usual(rng: np.random.Generator) ->
     )
     none = multivariate_normal(np.zeros(3), noise).pdf(x)
     np.testing.assert_allclose(_judge([(0.0, changed(info, score))], cause, KINDS)[0], np.log(density / none))
+
+
+def test_what_no_size_of_a_cause_explains_is_told_by_its_chance() -> None:
+    """A wrong clock moves all frequencies alike, exactly: across that, χ² has one degree of freedom."""
+    sizes, weights = sizes_about(1e-3, 1.2, both_ways=True)
+    clock = Cause("clock", np.ones((1, 2)), sizes, weights, misfit=0.0)
+    noise, kinds = 2e-4, ("frequency", "frequency")
+    for across in (0.5, 2.0, 3.0):
+        seen = -2e-3 + noise * across / np.sqrt(2.0) * np.array([1.0, -1.0])
+        change = changed(np.eye(2) / noise**2, seen / noise**2)
+        assert explained_share(change, clock, kinds) == pytest.approx(erfc(across / np.sqrt(2.0)), rel=0.02)
+        first = diagnose(change, (clock,), kinds)
+        is_clock = first.verdicts[0].cause == "clock"
+        assert is_clock is (across < 3.0) and bool(np.isnan(first.explained)) is not is_clock
+    loose = replace(clock, misfit=0.1)  # what a model may miss explains more
+    assert explained_share(change, loose, kinds) > 2.0 * explained_share(change, clock, kinds)
 
 
 def test_no_cause_is_favoured_for_its_usual_size() -> None:

@@ -15,6 +15,8 @@ from jackettwin.watching import CLEAR, CauseVerdict, Watch
 
 _TURNED = 3.0
 """Odds at which another cause corrects the one that was named: substantial evidence (Jeffreys 1961)."""
+_EXPLAINED = 0.02
+"""Probability of a deviation from a cause's effect below which the cause is said not to explain all."""
 _NAMED, _LIKELY = 3, 0.001
 """Number of causes in a sentence if none is clear, and the smallest probability of a listed cause."""
 
@@ -82,6 +84,7 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
         "again_utc": answered.get("again"),
         "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
         "inseparable": [list(group) for group in alarm.diagnosis.inseparable],
+        "explained": None if np.isnan(diagnosis.explained) else diagnosis.explained,
         "next_measurements": [
             {key: value or None for key, value in asdict(m).items()}
             | {"gain_nats": m.gain_nats, "share_of_doubt": min(m.gain_nats / _doubt(alarm), 1.0)}
@@ -172,9 +175,11 @@ def quantity_name(watch: Watch, key: tuple[str, int]) -> str:
 
 def likeliest(alarm: Mapping[str, Any]) -> str:
     """Return the likeliest cause of an alarm's document in words, or the first few if none is clear."""
-    now = alarm["verdicts"][-1]
+    now, explained = alarm["verdicts"][-1], alarm.get("explained")
     if now["probability"] >= CLEAR:
-        return f"most likely {verdict_words(now)}"
+        all_of_it = explained is None or explained >= _EXPLAINED
+        beyond = "" if all_of_it else ", which does not explain all of it: perhaps more than one change"
+        return f"most likely {verdict_words(now)}{beyond}"
     named = [f"{one['cause']} ({100.0 * one['probability']:.0f} %)" for one in alarm["causes"][:_NAMED]]
     return f"cause not clear: {', '.join(named)}"
 

@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import chdtrc
 
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import QUANTILES
@@ -66,10 +67,13 @@ class Diagnosis:
     ----------
     verdicts : causes in order of probability, including "something else"
     inseparable : groups of likely causes that these quantities do not distinguish
+    explained : probability of a change that differs at least as much from what the likeliest cause does; NaN
+        for a cause without a size
     """
 
     verdicts: tuple[CauseVerdict, ...]
     inseparable: tuple[tuple[str, ...], ...]
+    explained: float = float("nan")
 
 
 def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> Diagnosis:
@@ -93,7 +97,33 @@ def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> D
     verdicts.append(CauseVerdict(SOMETHING_ELSE, float(probability[-1]), np.nan, (np.nan, np.nan), "-"))
     ordered = tuple(sorted(verdicts, key=lambda v: -v.probability))
     likely = [c for c, p in zip(causes, probability, strict=False) if p > 0.02]
-    return Diagnosis(ordered, _groups(change, likely, {v.cause: v for v in ordered}, kinds))
+    first = next((c for c in causes if c.name == ordered[0].cause and not c.louder.size), None)
+    explained = float("nan") if first is None else explained_share(change, first, kinds)
+    return Diagnosis(ordered, _groups(change, likely, {v.cause: v for v in ordered}, kinds), explained)
+
+
+def explained_share(change: Change, cause: Cause, kinds: Sequence[str]) -> float:
+    r"""Return the probability of a change that differs at least as much from what a cause does.
+
+    With X = A⁻¹b of the likeliest onset and the size θ that fits best,
+
+    .. math:: χ^2 = (X - θJ)^T (A^{-1} + θ^2 RR^T)^{-1} (X - θJ)
+
+    has a degree of freedom less than there are quantities; the direction misses by the usual or more, each
+    with its share. A cause may be the likeliest of all and not be all: two changes at once have none.
+    """
+    best = slice(_best(change), _best(change) + 1)
+    noise = _inverse(change.info[best])[0]
+    off = noise @ change.score[best][0] - cause.steps(cause.sizes)
+    if len(kinds) < 2:
+        return 1.0
+    total = 0.0
+    for times, share in TAIL.items():
+        root = _misfit(cause, kinds, times)
+        wide = noise + cause.sizes[:, None, None] ** 2 * (root @ root.T)
+        square = np.einsum("si,si->s", off, np.linalg.solve(wide, off[..., None])[..., 0])
+        total += share * float(chdtrc(len(kinds) - 1, square.min()))
+    return total
 
 
 def _judge(
