@@ -9,4 +9,5 @@ mode is ``λ = −ζω + iω√(1−ζ²)``.
 from __future__ import annotations
 
 DOFS_PER_NODE = 6
+"""Three displacements and three rotations."""
 TRANSLATIONS = (0, 1, 2)

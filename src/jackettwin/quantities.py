@@ -20,6 +20,7 @@ class Quantity:
 
 
 DEGREE = 0.017453292519943295
+"""π/180 [rad]."""
 
 QUANTITIES: dict[str, Quantity] = {
     "acceleration": Quantity(

@@ -19,7 +19,9 @@ from jackettwin.errors import require
 from jackettwin.structure import Member, Structure
 
 _LEAST_M = 0.3
+"""Reach beyond a brace that 14.2.2 asks of a narrow chord."""
 _SAME = 1e-6
+"""Relative difference of walls that are one drawn thickness."""
 
 
 class Can(NamedTuple):

@@ -33,7 +33,8 @@ _NAMES = ("β", "γ", "τ", "α", "θ")
 _SHORT = 12.0
 """Chords with a smaller α are short: their ends stiffen the saddle."""
 _LARGER = "the larger of the factors there and at the limit is taken"
-_OF_KT = 3
+OF_KT = 3
+"""Braces of a KT joint."""
 _FIXED = 0.5
 """Chord-end fixity C of a chord whose ends are clamped."""
 
@@ -142,7 +143,7 @@ def concentration(
         )
     if kind == "kt":
         require(
-            len(joint.braces) == _OF_KT and joint.gaps_m is not None,
+            len(joint.braces) == OF_KT and joint.gaps_m is not None,
             "a KT joint has three braces and two gaps",
             field="gaps_m" if joint.gaps_m is None else "braces",
             value=len(joint.braces),

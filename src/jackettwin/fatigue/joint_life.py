@@ -10,6 +10,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.checks import IN_PLANE, JointPlan, brace_forces, joint_shares
 from jackettwin.fatigue.efthymiou import (
+    OF_KT,
     BraceTube,
     ConcentrationFactors,
     JointClass,
@@ -21,7 +22,6 @@ from jackettwin.fatigue.efthymiou import (
 from jackettwin.fatigue.hot_spots import hot_spot_matrix
 from jackettwin.structure import Assembly, SectionForces, Structure
 
-_OF_KT = 3
 _CLASSES: tuple[JointClass, ...] = ("k", "y", "x")
 """In the order in which a joint's forces are shared."""
 
@@ -195,7 +195,7 @@ def _nearest(plan: JointPlan, i: int) -> int | None:
 def _three(plan: JointPlan, i: int) -> tuple[tuple[int, int, int], tuple[float, float]] | None:
     """Return three braces in one plane in their order along the chord, and their gaps; None without them."""
     beside = np.flatnonzero(plan.across @ plan.across[i] > IN_PLANE)
-    if beside.size != _OF_KT:
+    if beside.size != OF_KT:
         return None
     centre, half = plan.centre_m, plan.half_m
     a, b, c = (int(j) for j in beside[np.argsort(centre[beside], kind="stable")])

@@ -16,6 +16,7 @@ from jackettwin.structure import beam
 Matrix = tuple[tuple[float, ...], ...]
 
 _EACH = 12
+"""Degrees of freedom of an element: six of each node."""
 
 
 @dataclass(frozen=True)

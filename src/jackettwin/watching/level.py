@@ -44,6 +44,7 @@ _GRID = np.array(list(product(UNEXPLAINED, WALKS, SCALES, SLOW_DAYS)))
 JUMPS = (0.05, 0.3)
 """Standard deviations of a jump."""
 JUMPS_A_DAY = 1e-3
+"""Prior rate of jumps: one in three years."""
 _MOST, _YOUNG_ROWS, _OLD_ROWS, _PARENTS = len(_GRID), 6, 40, 3
 """Largest number of hypotheses; rows for which a new one is retained regardless of its weight; rows after
 which its jump is merged with others; and number of hypotheses that may branch into a jump on a day."""

@@ -37,6 +37,7 @@ from jackettwin.signals import next_fast_len
 REWEIGHTINGS = 2
 """Number of times that the noise of each channel is re-estimated."""
 MAX_DAMPING_RATIO = 0.5
+"""At it a motion falls to 3 % within a cycle: beyond, it is a relaxation or a trend."""
 GRADIENT_TOLERANCE = 1e-3
 """Gradient at which a fit has converged, with parameters in units of their standard deviations."""
 MAX_ITERATIONS = 40

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 DERIVATIVES = {"acceleration": 0, "velocity": 1, "displacement": 2, "strain": 2, "inclination": 2}
 """Number of time derivatives from a quantity to acceleration."""
 MAX_DERIVATIVES = 2
+"""From displacement to acceleration."""
 MAX_EXPONENT = 1.5
 """Exponent of the spectrum over frequency above which one derivative is left out: accelerations under white
 forces have 0 to 0.7, white sensor noise has 2 per derivative."""

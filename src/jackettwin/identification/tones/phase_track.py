@@ -40,6 +40,7 @@ MAX_LOSS = 3.0
 ITERATIONS = 4
 """Number of corrections of the phase."""
 DEGREE = 3
+"""Of the splines of the phase: the frequency is smooth, and its rate continuous."""
 END_SHARE = 0.02
 """Share of the record at each end that is ignored in the range of the tone's frequency."""
 LEAST_RATIO = 120.0

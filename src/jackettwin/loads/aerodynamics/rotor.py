@@ -21,6 +21,7 @@ from jackettwin.loads.kernels import blade_elements
 from jackettwin.structure import BladeStructure
 
 AIR_KG_M3 = 1.225
+"""Density of air at 15 °C and 1013 hPa, at sea level (ISO 2533)."""
 SHAFTS = ("locked", "free")
 
 

@@ -22,6 +22,7 @@ from jackettwin.loads.kernels import wind_on_blades
 RINGS = (0.3, 0.55, 0.8, 1.0)
 """Radii of the rings as shares of the rotor's radius."""
 SPOKES = 12
+"""Azimuths of a ring at which the wind is kept: its orders up to six times the rotor's speed."""
 PIECE_M = 10.0
 """Largest length of a segment of blade or tower with one wind speed [m]."""
 

@@ -18,6 +18,7 @@ from jackettwin.loads.members.morison import MorisonPoints, above_bed, drag_damp
 from jackettwin.loads.sea.waves import SeaState, depth_functions, jonswap, wave_number
 
 _STEP_HZ = 1e-3
+"""Spacing of the spectrum's frequencies: a tenth of the width of the peak of a sea of 10 s."""
 _HIGHEST = 4.0
 """The spectrum ends at this multiple of its peak frequency, as in the simulation."""
 

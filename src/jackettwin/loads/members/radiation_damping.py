@@ -21,6 +21,7 @@ from jackettwin.loads.sea.diffraction import scattered
 from jackettwin.loads.sea.waves import depth_functions, wave_number
 
 _HEADINGS = 180
+"""Directions of the waves that are sent out, 2° apart; their power is smooth and periodic."""
 
 
 def radiation_damping(grid: MorisonPoints, shape: FloatArray, omega: float, depth: float) -> float:

@@ -32,6 +32,7 @@ from jackettwin.loads.operation.skewed_wake import redistributed
 _STEP_M_S = 0.01
 """Of velocity by which elements are differenced: within a tenth of the polars' spacing at the tip."""
 _STEP_SKEW = 1e-3
+"""Of the skew by which the wake is differenced centrally: the error is of its square."""
 
 
 @dataclass(frozen=True)

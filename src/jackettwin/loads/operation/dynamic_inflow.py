@@ -22,9 +22,11 @@ from jackettwin.loads.aerodynamics.rotor import Rotor
 from jackettwin.loads.operation.bem import OperatingPoint, ring_radius
 
 _FAST_SHARE = 0.6
+"""k of Øye's model, the part of the wake that answers with the second lag alone."""
 _HIGHEST_INDUCTION = 0.5
 """Beyond which τ₁ grows no further."""
 _LIFT_LAGS = ((0.3, 0.14), (0.7, 0.53))
+"""A and b of Leishman and Beddoes."""
 
 
 def wake_share(rotor: Rotor, operation: OperatingPoint, rate: complex) -> ComplexArray:

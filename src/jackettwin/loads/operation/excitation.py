@@ -24,6 +24,7 @@ PLACES = 96
 _PASSING = 0.1
 """Half width of the band about the blades' passing, as a share of its frequency."""
 _ORDERS = 2
+"""Multiples of the blades' passing that are told."""
 _DURATION_S, _STEP_S = 600.0, 0.1
 """Of the turbulence whose loads are told."""
 

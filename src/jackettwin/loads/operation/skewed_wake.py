@@ -17,6 +17,7 @@ from jackettwin.arrays import FloatArray
 
 _GRADIENT = 15.0 * np.pi / 32.0
 _SMALL = 1e-12
+"""Skew below any that changes a load; it keeps a wake without skew from having no direction."""
 
 
 def redistributed(

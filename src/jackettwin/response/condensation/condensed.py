@@ -46,6 +46,7 @@ _RETAINED = 1.2
 _SUMMED = 2.5
 """Modes up to this multiple of the band are summed in closed form; higher ones are represented by moments."""
 _MOST_MOMENTS = 24
+"""Terms after which the series counts as divergent: each ought to be (2.5/1.05)² = 5.7 times smaller."""
 _TAIL = 1e-13
 """The series of moments ends where its next term is smaller than this share of the boundary's mass."""
 _STEEPEST = 0.3

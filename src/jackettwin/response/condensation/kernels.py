@@ -36,8 +36,11 @@ within = njit(inline="always", **_HOW)
 """Decorator of functions that are called in one place and inlined there."""
 
 MAX_STEPS = 30
+"""Most Newton steps; convergence is cubic, so that one that needs more does not converge."""
 _TINY = 1e-300
+"""In place of zero where a number is divided by, near the smallest one of double precision."""
 _MAX_DEPTH = 24
+"""Most halvings of a piece of the arc, to 6e-8 of its length."""
 _NEAR = 0.05
 """A retained mode whose diagonal is less than this share of its ω² is near its resonance."""
 COARSE = 1e-4

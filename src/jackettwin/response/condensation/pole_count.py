@@ -35,6 +35,7 @@ one above its inverse a spring."""
 _NEARLY_REAL = 1e-5
 """Rounding may split a multiple real pole into pairs with this share of |λ| in Im λ; the count decides."""
 _ARC_POINTS = 48
+"""Points of the half circle to begin with; pieces on which the phase turns far are halved."""
 _EDGE = 1e-10
 """Relative distance from a pole of a law at which the inertia is evaluated on either side of it."""
 REAL = 1e-9

@@ -42,6 +42,7 @@ from jackettwin.structure import Assembly, assemble, turned_nacelle
 BAND_HZ = 5.0
 """Modes inside the structure are kept up to here."""
 _OVERDAMPED = 0.5
+"""Damping ratio from which a pole is no mode: of the supports' dashpots, not of the structure."""
 SOURCES = ("structure", "soil", "rotor", "water")
 
 

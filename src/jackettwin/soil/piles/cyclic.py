@@ -34,6 +34,7 @@ _REACH = {"py": 0.1, "tz": 0.02, "qz": 0.1}
 """Displacement over the diameter at which the last slider of a curve yields."""
 _ITERATIONS = 60
 _TOLERANCE = 1e-9
+"""Of the forces out of balance, over those that a millimetre of the steel's stiffness gives."""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 
 LARGEST_RHAT = 1.1
+"""R̂ of every parameter up to which runs count as mixed (Gelman et al. 2013, section 11.4)."""
 SMALLEST_ESS = 50.0
 """Number of effective draws below which a 90 % interval is unreliable."""
 

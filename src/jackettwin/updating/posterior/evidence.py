@@ -27,6 +27,7 @@ from jackettwin.updating.prior import Prior
 from jackettwin.updating.problem import NEVER
 
 _KERNELS = 100
+"""Most kernels of the density of the draws, whose centres are chosen at random."""
 _NEIGHBOURS = 0.1
 """Share of the draws whose covariance is that of a kernel."""
 _INDEPENDENT = 0.25

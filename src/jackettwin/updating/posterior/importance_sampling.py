@@ -23,6 +23,7 @@ from jackettwin.updating.problem import Problem
 _WIDTHS = (1.0, 1.5, 2.5)
 """Widths of the proposal's normals, in expected standard deviations; a posterior has heavier tails."""
 _FROM_PRIOR = 0.2
+"""Share of draws from the prior: no weight then exceeds five times the likelihood's (Hesterberg 1995)."""
 _EFFECTIVE = 120.0
 """Least effective number of draws (Kong 1992): ends of 90 % intervals are then at 5 ± 2 %."""
 _MOST_STEPS = 12

@@ -11,6 +11,7 @@ from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.path import PathEvaluator, constrained
 
 _REFINEMENTS = 4
+"""Most rounds of halving, to a sixteenth of the first steps."""
 _NEAR, _STEP = 8.0, 2.0
 """Where χ² is below the lowest plus the first, steps that change χ² by more than the second are halved."""
 

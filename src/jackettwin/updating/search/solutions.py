@@ -34,6 +34,7 @@ _HOPELESS = 4
 _DEFLATED = 6
 """Largest number of searches with known solutions excluded; a quarter of the starts if these are few."""
 _CONFIDENCE = 0.95
+"""With which a solution that was missed is said to have few ways that lead to it."""
 
 
 @dataclass(frozen=True)
