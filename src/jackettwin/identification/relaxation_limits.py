@@ -91,8 +91,6 @@ def ambient_limits(
     settings: IdentificationSettings,
     *,
     rates: tuple[float, ...] = (),
-    trials: int = TRIALS,
-    seed: int = 0,
     progress: Progress = SILENT,
 ) -> AmbientLimits:
     """Return the detection limits of relaxations in a record.
@@ -113,11 +111,11 @@ def ambient_limits(
     low, high = 2.0 * pi * band.lowest_frequency_hz, 2.0 * pi * band.highest_frequency_hz
     names, rms = tuple(c.name for c in ready.channels), ready.scale * np.nanstd(ready.y, axis=1)
     ready, _ = components(ready, settings)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     found = []
     for a in rates or tuple(np.geomspace(1.25 * low, min(8.0 * low, 0.8 * high), RATES)):
         progress(f"detection limit of relaxations at {a:.3g} rad/s")
-        found.append(_limit(ready, settings, float(a), trials, rng))
+        found.append(_limit(ready, settings, float(a), TRIALS, rng))
     return AmbientLimits(low, high, names, np.asarray(rms), tuple(found))
 
 

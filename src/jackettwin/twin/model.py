@@ -224,15 +224,15 @@ def placed_sensors(given: tuple[Sensor, ...], record: Record) -> tuple[Sensor, .
     )
 
 
-def twin_model(config: TwinConfig, assembly: Assembly | None = None) -> TwinModel:
-    """Return the model of a twin; ``assembly`` avoids assembling its structure again.
+def twin_model(config: TwinConfig) -> TwinModel:
+    """Return the model of a twin.
 
     Raises
     ------
     InputError
         If a sensor sits where the structure has no place.
     """
-    assembly = assembled(config) if assembly is None else assembly
+    assembly = assembled(config)
     if config.sensors:  # report wrong positions as errors of the twin file, not of the first record
         with located(file=config.path):
             observation_matrix(assembly, config.sensors)

@@ -140,10 +140,8 @@ def likelihood_gain(
     return max(-loss(best), 0.0), float(np.exp(best))
 
 
-def golden_section_minimum(
-    loss: Callable[[float], float], low: float, high: float, within: float = 1e-5
-) -> float:
-    """Return the minimiser of a unimodal function on an interval by golden-section search.
+def golden_section_minimum(loss: Callable[[float], float], low: float, high: float) -> float:
+    """Return the minimiser of a unimodal function on an interval, to 1e-5, by golden-section search.
 
     >>> round(golden_section_minimum(lambda x: (x - 0.3) ** 2, -1.0, 1.0), 4)
     0.3
@@ -151,7 +149,7 @@ def golden_section_minimum(
     golden = 0.5 * (np.sqrt(5.0) - 1.0)
     at = [high - golden * (high - low), low + golden * (high - low)]
     values = [loss(x) for x in at]
-    while high - low > within:
+    while high - low > 1e-5:
         if values[0] < values[1]:
             high, at[1], values[1] = at[1], at[0], values[0]
             at[0] = high - golden * (high - low)

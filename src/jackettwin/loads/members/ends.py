@@ -88,14 +88,13 @@ def member_ends(
     *,
     highest_z: float,
     lowest_z: float,
-    exclude_parts: tuple[str, ...] = (PILES,),
 ) -> Ends:
     """Return the ends of members at joints between the bed and a height, in m from still water."""
     structure = assembly.structure
     area: dict[str, FloatArray] = {}
     volume: dict[str, FloatArray] = {}
     for member in structure.members:
-        if member.part in exclude_parts:
+        if member.part == PILES:
             continue
         along = np.subtract(structure.nodes[member.end], structure.nodes[member.start])
         along = along / np.linalg.norm(along)
@@ -111,7 +110,7 @@ def member_ends(
     names = [n for n in area if _is_open(structure, n, lowest_z, highest_z)]
     rows = [assembly.expand[assembly.mesh.node_dofs(name)[:3]] for name in names]
     blank = sp.csr_array((0, assembly.n_dof))
-    rings = _rings(assembly, water, exclude_parts)
+    rings = _rings(assembly, water)
     here = (rings.points[:, 2] >= lowest_z) & (rings.points[:, 2] <= highest_z)
     at_rings = distribution(assembly, rings.element[here], rings.xi[here])
     at_joints = sp.csr_array((sp.vstack(rows) if rows else blank).T)
@@ -142,12 +141,12 @@ class _Rings(NamedTuple):
     xi: FloatArray
 
 
-def _rings(assembly: Assembly, water: Coefficients, exclude_parts: tuple[str, ...]) -> _Rings:
+def _rings(assembly: Assembly, water: Coefficients) -> _Rings:
     structure, mesh = assembly.structure, assembly.mesh
     none = np.zeros((0, 3))
     found = [_Rings(none, none, none, np.zeros(0, dtype=np.intp), np.zeros(0))]
     for index, member in enumerate(structure.members):
-        if member.part in exclude_parts:
+        if member.part == PILES:
             continue
         first, last = (np.array(structure.nodes[node]) for node in (member.start, member.end))
         first, last = (end - [0.0, 0.0, structure.sea_level_z_m] for end in (first, last))

@@ -57,16 +57,14 @@ def water_mass(
 
 
 def mass_per_level(
-    assembly: Assembly, coefficients: Coefficients, water: Water, *, step_m: float = 0.5, spacing: float = 1.0
+    assembly: Assembly, coefficients: Coefficients, water: Water, *, step_m: float = 0.5
 ) -> sp.csr_array:
     """Return ∂M/∂level at still water, (n_dof, n_dof) [kg/m, …]: the effect of the tide on the mass of water.
 
     It is computed by central differences over ± ``step_m``, the range of a tide, so that braces just below or
     above the surface are included in part.
     """
-    grid = morison_points(
-        assembly, highest_z=step_m, lowest_z=-step_m, coefficients=coefficients, spacing=spacing
-    )
+    grid = morison_points(assembly, highest_z=step_m, lowest_z=-step_m, coefficients=coefficients)
     high, low = (water_mass(assembly, grid, water, level_m=sign * step_m) for sign in (1.0, -1.0))
     return sp.csr_array((high - low) / (2.0 * step_m))
 

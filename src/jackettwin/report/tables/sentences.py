@@ -110,12 +110,12 @@ def span_words(span: Span, unit: str) -> str:
     return f"{value} ({between(span.low, span.high, unit)})"
 
 
-def percent_words(span: Span, digits: int = 2) -> str:
+def percent_words(span: Span) -> str:
     """Return a ratio in per cent with its interval."""
-    text = f"{100.0 * span.value:.{digits}g} %"
+    text = f"{100.0 * span.value:.2g} %"
     if span.low is None or span.high is None or span.high < 1.05 * span.low:  # practically given
         return text
-    return f"{text} ({100.0 * span.low:.{digits}g} to {100.0 * span.high:.{digits}g} %)"
+    return f"{text} ({100.0 * span.low:.2g} to {100.0 * span.high:.2g} %)"
 
 
 def data_words(a: Answers) -> str:

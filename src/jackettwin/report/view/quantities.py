@@ -36,7 +36,7 @@ def material_quantities(assembly: Assembly) -> tuple[ColouredQuantity, ...]:
     )
 
 
-def damping_quantity(system: System, modes: DampedModes, name: str = "") -> ColouredQuantity | None:
+def damping_quantity(system: System, modes: DampedModes) -> ColouredQuantity | None:
     """Return the share of each element in the dissipation of the first mode; None without dissipation."""
     lively = np.flatnonzero(modes.damping_ratio < _LIVELY)
     if lively.size == 0:
@@ -47,7 +47,7 @@ def damping_quantity(system: System, modes: DampedModes, name: str = "") -> Colo
     if not total > 0.0:
         return None
     return ColouredQuantity(
-        f"damping: share of {name or 'the first mode'}",
+        "damping: share of the first mode",
         "%/m",
         100.0 * power / total / system.assembly.mesh.properties.L,
         from_zero=True,

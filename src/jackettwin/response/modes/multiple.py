@@ -42,11 +42,11 @@ def axis_levels(assembly: Assembly) -> FloatArray:
     return mean
 
 
-def inseparable(values: npt.NDArray[Any], closer_than: float = INSEPARABLE) -> list[IntArray]:
+def inseparable(values: npt.NDArray[Any]) -> list[IntArray]:
     """Return groups of two or more neighbours in the list whose relative differences are below a limit."""
     if values.size < 2:
         return []
-    cuts = np.flatnonzero(~(np.abs(np.diff(values)) <= closer_than * np.abs(values[1:]))) + 1
+    cuts = np.flatnonzero(~(np.abs(np.diff(values)) <= INSEPARABLE * np.abs(values[1:]))) + 1
     return [group for group in np.split(np.arange(values.size), cuts) if group.size > 1]
 
 

@@ -35,6 +35,8 @@ REAL = 1e-9
 """A pole with |Im λ| below this share of |λ| is real."""
 _AT_ZERO = 5e-6
 """A pole smaller than this share of the disc's radius is a rigid-body motion, not an oscillation."""
+_MOST_STEPS = 20
+"""Most steps of a refinement; convergence is cubic."""
 _AT_REST = 1e-10
 """A pole has converged when a Newton step changes it by less than this (relative)."""
 _ROUNDING = 1e-7
@@ -229,7 +231,7 @@ def _nearly(
 
 
 def _newton(
-    pencil: Pencil, values: ComplexArray, x: ComplexArray, *, rest: float = _AT_REST, steps: int = 20
+    pencil: Pencil, values: ComplexArray, x: ComplexArray, *, rest: float = _AT_REST
 ) -> tuple[ComplexArray, ComplexArray, bool]:
     r"""Refine a cluster of poles together: inverse iteration and Rayleigh–Ritz on F(λ) about their mean.
 
@@ -238,7 +240,7 @@ def _newton(
     iteration (Neumaier 1985): :math:`x - F(σ)^{-1} F(λ) x`.
     """
     change = last = np.inf
-    for _ in range(steps):
+    for _ in range(_MOST_STEPS):
         mean = complex(values.mean())
         F, dF = pencil.F(mean), pencil.dF(mean)
         try:

@@ -13,6 +13,10 @@ from jackettwin.response.modes.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
 
+_BAND_HZ = (0.1, 1.5)
+"""Of the motion that is shown: that of the first modes; below it accelerations are noise."""
+_STEP_S = 0.1
+"""Of what is shown, several pictures in the shortest cycle."""
 _TAPER = 0.3
 """Share of a band edge's frequency over which the filter rises."""
 _VISIBLE, _NEW = 0.05, 0.2
@@ -66,9 +70,7 @@ def playback(
     modes: UndampedModes,
     record: Record,
     *,
-    band_hz: tuple[float, float] = (0.1, 1.5),
     duration_s: float = 60.0,
-    step_s: float = 0.1,
 ) -> Playback:
     r"""Return the part of a record with most motion as modal coordinates.
 
@@ -77,11 +79,11 @@ def playback(
     """
     sensors = record_sensors(record)
     data = record.select([s.channel for s in sensors]).data
-    d = _displacement(np.array([_filled(row) for row in data]), record.sample_rate_hz, band_hz)
+    d = _displacement(np.array([_filled(row) for row in data]), record.sample_rate_hz, _BAND_HZ)
     seen = np.asarray(observation_matrix(assembly, sensors) @ modes.shapes)
-    kept = _told_apart(seen, modes.frequency_hz <= band_hz[1])
+    kept = _told_apart(seen, modes.frequency_hz <= _BAND_HZ[1])
     shapes = modes.shapes[:, kept]
-    stride = max(1, round(step_s * record.sample_rate_hz))
+    stride = max(1, round(_STEP_S * record.sample_rate_hz))
     q = (np.linalg.pinv(seen[:, kept]) @ d[:, ::stride]).T
     step = stride / record.sample_rate_hz
     first = _liveliest(q, max(1, round(duration_s / step)))

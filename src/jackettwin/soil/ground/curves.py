@@ -113,8 +113,8 @@ def secant_stiffness(curve: Curve, y: FloatArray | float) -> FloatArray:
     return np.where(moving, curve.force(y) / np.where(moving, y, 1.0), curve.initial_stiffness)
 
 
-def force_and_tangent(curve: Curve, y: float, *, step: float = 1e-6) -> tuple[float, float]:
-    """Return p(y), and dp/dy by central differences; ``step`` is relative to |y| but at least 1e-9 m."""
-    h = max(step * abs(y), 1e-9)
+def force_and_tangent(curve: Curve, y: float) -> tuple[float, float]:
+    """Return p(y), and dp/dy by central differences over a millionth of y [m], at least a nanometre."""
+    h = max(1e-6 * abs(y), 1e-9)
     here, ahead, behind = curve.force(np.array([y, y + h, y - h]))
     return float(here), float(ahead - behind) / (2.0 * h)

@@ -21,6 +21,8 @@ from jackettwin.soil.piles.reaction_curves import PileCurves, linearised
 
 FAILED_AT = 0.1
 """Head displacement in pile diameters that counts as failure: a tenth, as pile tests are read."""
+_BALANCED = 1e-8
+"""Largest load out of balance, as a share of the largest load."""
 _LEAST_STEPS = 20
 """Of the head on its way to failure."""
 
@@ -37,9 +39,7 @@ class LoadedPile:
         return linearised(curves, lateral_m=np.hypot(u[:, 0], u[:, 1]), axial_m=u[:, 2])
 
 
-def push(
-    pile: Pile, curves: PileCurves, head_load: FloatArray, *, tolerance: float = 1e-8, steps: int = 10
-) -> LoadedPile:
+def push(pile: Pile, curves: PileCurves, head_load: FloatArray, *, steps: int = 10) -> LoadedPile:
     """Return the pile under ``head_load`` (6,) [N, N·m], by Newton's method in ``steps`` equal increments.
 
     Lateral springs act along the resultant displacement (both directions share one curve); torsion keeps its
@@ -57,7 +57,7 @@ def push(
     for step in range(1, steps + 1):
         load = np.zeros((n, 6))
         load[0] = head_load * (step / steps)
-        u = _newton(steel, curves, initial.torsional, u, load, tolerance)
+        u = _newton(steel, curves, initial.torsional, u, load)
     return LoadedPile(u)
 
 
@@ -67,13 +67,12 @@ def _newton(
     torsional: FloatArray,
     u: FloatArray,
     load: FloatArray,
-    tolerance: float,
 ) -> FloatArray:
     scale = float(np.abs(load).max()) or 1.0
     for _ in range(60):
         force, tangent = soil_reaction(curves, torsional, u)
         residual = load - force - (steel @ u.ravel()).reshape(u.shape)
-        if np.abs(residual).max() <= tolerance * scale:
+        if np.abs(residual).max() <= _BALANCED * scale:
             return u
         try:
             change = spla.splu(sp.csc_matrix(steel + tangent)).solve(residual.ravel())

@@ -161,10 +161,9 @@ def linear_springs(
     lateral: Callable[[FloatArray], FloatArray],
     axial: Callable[[FloatArray], FloatArray],
     tip_n_m: float = 0.0,
-    boundaries: tuple[float, ...] = (),
 ) -> PileSprings:
     """Return the springs of a soil given as stiffness per length k_h(z), k_v(z) [N/m²]; no torsional ones."""
-    at = stations(pile, boundaries)
+    at = stations(pile, ())
     k_v = at.at_nodes(np.broadcast_to(axial(at.depth), at.depth.shape))
     k_v[-1] += tip_n_m
     k_h = at.at_nodes(np.broadcast_to(lateral(at.depth), at.depth.shape))

@@ -14,6 +14,10 @@ from jackettwin.updating.problem import Problem
 
 _DRAWS = 400
 """Equally weighted draws taken from each run."""
+_RUNS = 2
+"""Independent runs, whose disagreement is the error."""
+_REMAINING = 0.02
+"""Largest ln Z that the live points may still add at the end."""
 _SAID_EVERY = 100
 """Number of evaluations between progress messages: some tenths of a second."""
 
@@ -22,8 +26,6 @@ def sample_nested(
     problem: Problem,
     *,
     live: int = 200,
-    runs: int = 2,
-    remaining: float = 0.02,
     seed: int = 0,
     progress: Progress = SILENT,
 ) -> Posterior:
@@ -33,8 +35,6 @@ def sample_nested(
     ----------
     live : int
         Live points of each run.
-    remaining : float
-        Largest ln Z remaining in the live points at the end.
     progress : Progress
         Receives the number of likelihood evaluations.
 
@@ -66,11 +66,11 @@ def sample_nested(
         return float(problem.log_likelihood(z[None], near)[0][0])
 
     draws, values, evidences = [], [], []
-    for rng in np.random.default_rng(seed).spawn(runs):
+    for rng in np.random.default_rng(seed).spawn(_RUNS):
         sampler = NestedSampler(
             log_likelihood, problem.prior.from_unit, problem.prior.low.size, nlive=live, rstate=rng
         )
-        sampler.run_nested(dlogz=remaining, print_progress=False)
+        sampler.run_nested(dlogz=_REMAINING, print_progress=False)
         weight = np.exp(sampler.results.logwt - sampler.results.logz[-1])
         which = rng.choice(weight.size, _DRAWS, p=weight / weight.sum())
         draws.append(sampler.results.samples[which])

@@ -209,7 +209,7 @@ class Scatter:
     before: tuple[float, float]
 
 
-def leg_scatter(prior: Prior, z: FloatArray, *, seed: int = 0) -> tuple[Scatter, ...]:
+def leg_scatter(prior: Prior, z: FloatArray) -> tuple[Scatter, ...]:
     """Return the scatters for draws z (n, d) of the parameters; empty without legs.
 
     Examples
@@ -221,7 +221,7 @@ def leg_scatter(prior: Prior, z: FloatArray, *, seed: int = 0) -> tuple[Scatter,
     >>> [round(v, 2) for v in found.before], bool(np.median(found.draws) < 0.3)
     ([0.19, 0.88], True)
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     groups = prior.legs if isinstance(prior, ScatteredPrior) else ()
     found = []
     for group in groups:

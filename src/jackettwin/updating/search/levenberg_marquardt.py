@@ -27,6 +27,8 @@ _PROBE = 0.1
 """Share of the step over which the second derivative is taken."""
 _LONGER, _SHORTER = 5.0, 3.0
 """Divisor of the damping after a successful step, and its factor after a failure."""
+_MOST_STEPS = 60
+"""Most steps; in a valley so curved that they do not suffice, the next search goes on from there."""
 _FIRST, _LAST = 1e-4, 1e14
 """Initial damping, and damping at which the iteration ends, since no step is short enough."""
 
@@ -40,7 +42,6 @@ def damped_least_squares(
     held: tuple[int, ...] = (),
     tolerance: float = 1e-9,
     enough: float = 0.0,
-    most: int = 60,
 ) -> FloatArray:
     """Return a point of least squares between bounds.
 
@@ -54,8 +55,6 @@ def damped_least_squares(
         The iteration ends if a step changes all coordinates, or the relative cost, by less than this.
     enough : float
         The iteration also ends if the cost is not higher than this.
-    most : int
-        Largest number of steps.
     """
     low, high = low.copy(), high.copy()
     for side in (low, high):
@@ -63,7 +62,7 @@ def damped_least_squares(
     z, damping, width = start, _FIRST, high - low
     r, J = rows(z)
     cost = float(r @ r)
-    for _ in range(most):
+    for _ in range(_MOST_STEPS):
         if cost <= enough:
             break
         gradient = r @ J
