@@ -10,7 +10,7 @@ from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import NuisanceParameters, Problem, Residuals, Target, joint, support_model
 from jackettwin.updating.search.levenberg_marquardt import damped_least_squares
-from jackettwin.updating.search.path import Path, creep, minimum, squares
+from jackettwin.updating.search.path import PathEvaluator, creep, minimum, squares
 from jackettwin.updating.search.surrogate import Surrogate
 
 
@@ -90,8 +90,8 @@ def test_a_surrogate_is_the_problem_at_its_point_and_leaves_it_with_the_square_o
 
 def test_surrogates_end_where_steps_on_the_structure_do(problem: Problem) -> None:
     middle = 0.5 * (problem.prior.low + problem.prior.high)
-    start = creep(Path(problem), middle, Path(problem), tolerance=1e-2)
-    slow, fast = Path(problem), Path(problem)
+    start = creep(PathEvaluator(problem), middle, PathEvaluator(problem), tolerance=1e-2)
+    slow, fast = PathEvaluator(problem), PathEvaluator(problem)
     pull = slow.pull(1.0)
     far = creep(slow, start, pull(slow), tolerance=1e-10)
     near, arrived = minimum(fast, start, pull)
