@@ -48,7 +48,7 @@ def test_a_models_slope_is_that_of_its_condition_in_standard_units() -> None:
 
 
 def test_a_baseline_of_a_year_knows_slow_processes_and_a_short_one_does_not() -> None:
-    whole, part = np.arange(0.0, 365.0), np.arange(0.0, 90.0)
+    whole, half, part = np.arange(0.0, 365.0), np.arange(0.0, 200.0), np.arange(0.0, 90.0)
 
     def slow(days: np.ndarray) -> list[tuple[str, str, float]]:
         h = rows(days, air_temperature_c=10.0 + np.cos(days / 58.0), hs_m=1.0 + np.sin(days) ** 8)
@@ -57,6 +57,7 @@ def test_a_baseline_of_a_year_knows_slow_processes_and_a_short_one_does_not() ->
         return [(c.name, c.shape, c.lag_days) for c in added]
 
     assert slow(part) == []
+    assert slow(half) == [("hs_m", "storm", HEALING_DAYS), ("time", "trend", 0.0)]  # growth goes on
     assert slow(whole) == [
         ("hs_m", "storm", HEALING_DAYS), ("air_temperature_c", "line", GROUND_DAYS), ("time", "trend", 0.0),
     ]  # fmt: skip

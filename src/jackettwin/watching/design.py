@@ -187,15 +187,15 @@ def with_slow_processes(design: Design, baseline: History) -> Design:
     a stiffness through time, of whose changes they would explain a part.
     """
     span, lines = float(np.ptp(baseline.days)), [c for c in design.columns if c.shape == "line"]
+    if span <= _SEVERAL * HEALING_DAYS:
+        return design
     there = [c for c in lines if c.lag_days == 0.0]
-    slow = []
-    if span > _SEVERAL * HEALING_DAYS:
-        rough = [c for pattern in (_WAVES, _WIND) for c in there if pattern.search(c.name)][:1]
-        slow += [replace(c, shape="storm", lag_days=HEALING_DAYS, prior=_CURVED) for c in rough]
+    rough = [c for pattern in (_WAVES, _WIND) for c in there if pattern.search(c.name)][:1]
+    slow = [replace(c, shape="storm", lag_days=HEALING_DAYS, prior=_CURVED) for c in rough]
     if span > WHOLE_YEAR_DAYS:
         slow += [replace(c, lag_days=GROUND_DAYS, prior=_SLOW) for c in lines if c.lag_days == max(LAGS_DAYS)]
-        middle = float(baseline.days[0]) + 0.5 * span
-        slow.append(Column("time", -1, 0.0, "trend", middle, YEAR_DAYS, _SLOW))
+    middle = float(baseline.days[0]) + 0.5 * span
+    slow.append(Column("time", -1, 0.0, "trend", middle, YEAR_DAYS, _SLOW))
     return replace(design, columns=(*design.columns, *slow))
 
 
