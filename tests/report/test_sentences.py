@@ -18,7 +18,8 @@ from jackettwin.answers.result import (
     NextStep,
 )
 from jackettwin.report.tables.answers import budget_table, ground_table
-from jackettwin.report.tables.sentences import _model, percent_words, sentences, span_words
+from jackettwin.report.tables.sentences import _model, sentences, span_words
+from jackettwin.report.tables.sentences_damping import percent_words
 from jackettwin.study.scrutiny import Scrutiny
 from jackettwin.updating import (
     DatumCheck,

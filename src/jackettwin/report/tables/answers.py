@@ -5,8 +5,9 @@ from __future__ import annotations
 from jackettwin.answers import Answers, Span
 from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, between, factor, fixed, words
-from jackettwin.report.tables.sentences import span_words, step_words, verdict_words
+from jackettwin.report.tables.sentences import span_words, verdict_words
 from jackettwin.report.tables.sentences_fit import value_words
+from jackettwin.report.tables.sentences_next import step_words
 from jackettwin.soil import parameter_words
 from jackettwin.study import TwinResult
 from jackettwin.updating import SOURCES
