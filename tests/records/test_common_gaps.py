@@ -57,3 +57,13 @@ def test_a_common_gap_is_neither_a_clock_nor_a_sign(kind: str, seed: int, gap: s
     assert np.all(np.isnan(mended[:, gap]))
     # elsewhere as it was: neither shifted nor reversed
     assert np.array_equal(np.delete(mended, np.r_[gap], axis=1), np.delete(y, np.r_[gap], axis=1))
+
+
+def test_a_sensor_that_is_mostly_missing_keeps_no_other_from_being_judged() -> None:
+    y = tower(np.random.default_rng(3))[::2]
+    y[1, 2000:9500] = np.nan
+    y[2] *= -1.0
+    channels = tuple(Channel(f"x{h:.0f}", height_m=h, direction=(1.0, 0.0, 0.0)) for h in HEIGHTS)
+    told = {(f.code, f.subject) for f in assess(Record(y, RATE_HZ, channels)).findings}
+    # of two that are left it is not known which one is wrong
+    assert {code for code, _ in told} == {"gaps", "sign_unclear"}

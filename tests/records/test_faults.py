@@ -67,6 +67,19 @@ def test_a_frozen_reading_is_marked_whole(rng: np.random.Generator) -> None:
     assert marked[1000:1300].all() and marked.sum() == 300
 
 
+def test_a_smooth_motion_on_a_large_offset_is_not_frozen(rng: np.random.Generator) -> None:
+    """Gravity in a vertical channel: its rounding in single precision hides the bends of calm minutes."""
+    t = np.arange(60_000) / 100.0
+    calm = np.where((t > 200.0) & (t < 400.0), 0.02, 1.0)
+    y = (9.81 + 2e-3 * calm * np.sin(2 * np.pi * 0.3 * t) + 1e-6 * calm * rng.normal(size=t.size)).astype(
+        np.float32
+    )
+    assert not faults.stuck(y.astype(float), 100).any()
+    joined = rng.normal(size=5000)
+    joined[2000:2600] = np.linspace(joined[2000], joined[2599], 600)
+    assert faults.stuck(joined.astype(np.float32).astype(float), 100).sum() == 600
+
+
 def test_a_coarse_slow_signal_is_not_frozen() -> None:
     t = np.arange(30_000) / 50.0
     assert not faults.stuck(np.round(4 * np.sin(2 * np.pi * 0.02 * t)), 50).any()

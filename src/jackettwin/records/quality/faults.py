@@ -74,6 +74,8 @@ def quantiser_step(y: FloatArray) -> float:
 
 STRAIGHT = 4.0 * float(np.finfo(np.float32).eps)
 """Largest bend of a line over its samples: three samples of single precision, the middle one twice."""
+SMALL_ROUNDING = 0.05
+"""Largest share of that in the median bend, so that a line is no part of a smooth motion by chance."""
 
 
 def runs(mask: BoolArray) -> Int64Array:
@@ -193,10 +195,18 @@ def stuck(y: FloatArray, shortest: int) -> BoolArray:
 
 
 def _no_bend(y: FloatArray, step: FloatArray) -> BoolArray:
-    """Tell where three samples lie on a line, to the rounding of single precision, (n_samples − 2,)."""
-    size = np.abs(y)
-    bend = np.abs(np.diff(step))
-    return np.asarray(bend <= STRAIGHT * np.maximum(np.maximum(size[2:], size[1:-1]), size[:-2]))
+    """Tell where three samples lie on a line, to the rounding of single precision, (n_samples − 2,).
+
+    Nowhere if that rounding is not small beside the bends of the motion, as on a large offset.
+    """
+    bend, rounding = np.abs(np.diff(step)), STRAIGHT * np.abs(y[1:-1])
+    some = slice(None, None, max(len(bend) // 4096, 1))
+    there = np.isfinite(bend[some])
+    if not there.any() or not (
+        np.median(rounding[some][there]) < SMALL_ROUNDING * np.median(bend[some][there])
+    ):
+        return np.zeros(len(bend), dtype=np.bool_)
+    return np.asarray(bend <= np.maximum(rounding, STRAIGHT * np.abs(y[2:])))
 
 
 def hold_length(y: FloatArray) -> int:

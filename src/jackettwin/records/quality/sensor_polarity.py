@@ -96,12 +96,14 @@ def parallel_groups(record: Record, y: FloatArray) -> Iterator[ParallelChannels]
         Its samples without mean and drift; NaN marks missing ones.
     """
     for rows, senses in _parallel(record, y):
+        used = [k for k, i in enumerate(rows) if fade_weight(y[i : i + 1]).mean() >= LEAST_USED]
+        rows = [rows[k] for k in used]
         places = [_place(record.channels[i]) for i in rows]
         if all(place is None for place in places):
             continue
-        own = y[rows] * senses[:, None]
+        own = y[rows] * senses[used, None]
         fade = fade_weight(own)
-        if fade.mean() < LEAST_USED:
+        if len(rows) < 2 or fade.mean() < LEAST_USED:
             continue
         spectra = _windowed_spectra(own, fade)
         for together in _one_place(places):
