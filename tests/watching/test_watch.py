@@ -166,6 +166,18 @@ def test_a_day_that_is_over_is_refused(quiet: History) -> None:
         step(watch, quiet.between(50.0, 51.0))
 
 
+def test_a_slope_that_rests_on_one_value_says_nothing_of_the_next_storm(rng: np.random.Generator) -> None:
+    """An outlier in the only storm of a baseline: its residual is zero, and the next storm was 270 nats."""
+    days = np.append(np.sort(rng.uniform(0.0, 130.0, 100)), 130.2 + np.arange(4) / 144.0)
+    wind, ln_f = 3.0 + 0.5 * rng.standard_normal(104), 2e-3 * rng.standard_normal((104, 2))
+    wind[60], wind[100:], ln_f[60, 0] = 24.0, 24.5, 0.08
+    f = np.array([0.3, 1.1]) * np.exp(ln_f)
+    none, states = np.full(f.shape, np.nan), np.zeros(104, dtype=np.intp)
+    told = History(days, ("a", "b"), f, 2e-3 * f, none, none, wind[:, None], ("wind",), states)
+    _, looks, changes = watched(told, 130.0)
+    assert not changes and abs(looks[0].rest[0]) < 3.0 * looks[0].rest_std[0]
+
+
 def test_evidence_of_hidden_weather_is_guarded_after_a_year(rng: np.random.Generator) -> None:
     """A power below one cannot raise R, and leaves watches with conditions or a short baseline alone."""
     days = np.arange(0.0, 400.0, 0.5)

@@ -140,11 +140,11 @@ def begin(
     y, relative = deviations(baseline, kind, kept, middle, power, near)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)
-    usual_std, rest = _usual_std(baseline.days, x, y, relative, design)
+    usual_std, rest, alone = _usual_std(baseline.days, x, y, relative, design)
     variance = _variance(relative, usual_std)
     apart, doubt, tail = _set_apart(baseline, rest, variance)
     y[apart] = np.nan
-    hours = by_hour(baseline.days, baseline.states, x, y, variance * doubt, WINDOW_DAYS)
+    hours = by_hour(baseline.days, baseline.states, x, y, variance * doubt * alone, WINDOW_DAYS)
     day = np.floor(baseline.days)
     beside = sum(_rejected_by_others(apart[day == d], rest[day == d]) for d in np.unique(day))
     spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual_std)
@@ -201,10 +201,15 @@ def _by_day(hours: Hours, memory: Memory) -> tuple[FloatArray, FloatArray]:
 
 def _usual_std(
     days: FloatArray, x: FloatArray, y: FloatArray, relative: FloatArray, design: Design
-) -> tuple[FloatArray, FloatArray]:
-    """Return the usual standard deviation (m,), stated or by differences, and the residuals."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the usual standard deviation (m,), stated or by differences, residuals, and variance factors.
+
+    A value on which a slope rests by more than a half has a residual near zero, whatever it is, so that
+    no other value tells whether it is an outlier. With the leverage h its variance is (h/(1 − h))² times as
+    large: it leaves the slope as uncertain as before (bounded influence, Krasker & Welsch 1982).
+    """
     m = y.shape[1]
-    usual, rest = np.empty(m), np.full(y.shape, np.nan)
+    usual, rest, alone = np.empty(m), np.full(y.shape, np.nan), np.ones(y.shape)
     for q in range(m):
         seen = np.flatnonzero(np.isfinite(y[:, q]))
         weight = np.ones(seen.size)
@@ -214,13 +219,22 @@ def _usual_std(
             right = (x[seen].T * weight) @ y[seen, q] / _robust(y[seen, q]) ** 2
             rest[seen, q] = y[seen, q] - x[seen] @ np.linalg.solve(left + prior, right)
             weight = np.minimum(1.0, 1.5 * _robust(rest[seen, q]) / np.maximum(np.abs(rest[seen, q]), 1e-12))
+        pull = (
+            np.einsum("ip,pq,iq->i", x[seen], np.linalg.inv(left + prior), x[seen]) / _robust(y[seen, q]) ** 2
+        )
+        h = np.clip(weight * pull, 0.5, _MOST_LEVERAGE)
+        alone[seen, q] = (h / (1.0 - h)) ** 2
         near = np.diff(days[seen]) < 0.25
         pairs = np.diff(rest[seen, q])[near] if near.sum() > _FEWEST // 2 else np.diff(rest[seen, q])
         stated = relative[np.isfinite(relative[:, q]), q]
         usual[q] = (
             np.median(stated) if stated.size > _FEWEST // 2 else max(_robust(pairs) / np.sqrt(2.0), 1e-6)
         )
-    return usual, rest
+    return usual, rest, alone
+
+
+_MOST_LEVERAGE = 0.99
+"""Leverage from which a value counts as little as with it."""
 
 
 def _robust(x: FloatArray) -> float:
