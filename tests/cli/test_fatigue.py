@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
+from jackettwin.cli.weld_tables import show_lives
 
 
 def run(*arguments: str):
@@ -85,6 +86,24 @@ def test_gaps_are_scaled_and_said(stress: Path, tmp_path: Path) -> None:
     assert answer("stress", str(path), "--column", "leg")["damage"] == pytest.approx(
         found["damage"], rel=1e-9
     )
+
+
+def test_a_factor_beyond_its_range_is_no_headline(capsys: pytest.CaptureFixture[str]) -> None:
+    """Its weld stands behind the others, however short its life."""
+    row = {
+        "brace": "b",
+        "side": "chord",
+        "position": "crown 0°",
+        "environment": "air",
+        "largest_range_mpa": 9.0,
+    }
+    joints = [
+        {**row, "joint": "wide", "life_years": 0.1, "beyond_validity": ["β = 0.1"]},
+        {**row, "joint": "usual", "life_years": 5.0, "beyond_validity": []},
+    ]
+    show_lives({"joints": joints, "welds": [], "warnings": []}, "all")
+    shown = capsys.readouterr().out
+    assert 0 < shown.index("usual") < shown.index("wide")
 
 
 def test_what_a_column_does_not_state_is_said(tmp_path: Path) -> None:

@@ -104,9 +104,15 @@ def test_kilonewtons_gaps_and_openfasts_binary(simulated: tuple[dict, Path], tmp
     bridged = answer("fatigue", "forces", "jacket15", str(gap))
     assert "incomplete" in bridged["warnings"][0]
     assert by_weld(bridged)[worst[0]] == pytest.approx(own[worst[0]], rel=0.4)
-    wrong = {"time_s": table["time_s"], **dict(zip(names, 1e6 * values, strict=True))}
-    pq.write_table(pa.table(wrong), gap)
-    refused = run("fatigue", "forces", "jacket15", str(gap))
+    # kilonewtons and more under the names of newtons, and the other way round
+    for size in (1e-3, 1e6):
+        wrong = {"time_s": table["time_s"], **dict(zip(names, size * values, strict=True))}
+        pq.write_table(pa.table(wrong), gap)
+        refused = run("fatigue", "forces", "jacket15", str(gap))
+        if size < 1.0:
+            assert refused.exit_code == 0 and "are the forces in the units" in refused.stderr.replace(
+                "\n", " "
+            )
     assert refused.exit_code == 2 and "no steel resists" in refused.stderr
 
 

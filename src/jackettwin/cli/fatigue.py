@@ -37,7 +37,7 @@ _OF_RECORDS = (
     Omission("other seas, winds and states: all time is assumed to be like this record"),
     Omission("errors of the model beyond its tolerances: other geometry, other damage, joints that yield"),
     Omission("slow forces that neither a sensor nor the record's stated wind and sea show"),
-    Omission("buoyancy and mean thrust in the shares of K, Y and X joints"),
+    Omission("the mean drag of wind and waves in the shares of K, Y and X joints"),
     Omission("bending blades"),
 )
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from jackettwin.caveats import Omission, omission_documents
 from jackettwin.cli.console import Reply, answers, working
-from jackettwin.cli.weld_options import STRONGEST_PA, details_option, edition_option, joint_options
+from jackettwin.cli.weld_options import STRONGEST_PA, USUAL_PA, details_option, edition_option, joint_options
 from jackettwin.cli.weld_tables import OF_WELDS, lives_document, show_lives
 from jackettwin.errors import located, look_up, require
 
@@ -62,6 +62,11 @@ def forces_(
             widest < STRONGEST_PA, f"no steel resists stress ranges of {widest / 1e6:.3g} MPa",
             field="columns", remedy="are the forces in the units that their columns name?",
         )  # fmt: skip
+        if widest < USUAL_PA:
+            warnings.append(
+                f"no stress range is larger than {1e-6 * widest:.2g} MPa: are the forces in the units that "
+                "their columns name?"
+            )
     if found.unknown:
         warnings.append(
             f"{len(found.unknown)} joints or butt welds lack section forces: {few(list(found.unknown))}"

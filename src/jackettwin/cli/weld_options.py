@@ -11,6 +11,8 @@ from jackettwin.cli.console import FiniteFloat
 
 STRONGEST_PA = 2e9
 """Stress range above which the unit must be wrong."""
+USUAL_PA = 1e6
+"""Largest range of welds below which the unit is doubted."""
 
 
 def joint_options(command: Any) -> Any:

@@ -61,7 +61,8 @@ def show_lives(document: dict[str, Any], like: str) -> None:
     )
     for key, title, columns in shown:
         if document[key]:
-            show_welds(title, columns, document[key])
+            # a factor outside its range is a bound, and no headline
+            show_welds(title, columns, sorted(document[key], key=lambda row: bool(row["beyond_validity"])))
     for warning in document["warnings"]:
         messages.print(f"warning: {warning}")
 
@@ -159,6 +160,7 @@ def _weld_warnings(rows: list[dict[str, Any]]) -> list[str]:
     if not outside:
         return []
     named = few(list(dict.fromkeys(f"{row['brace']} at {row['joint']}" for row in outside)))
-    return [
-        f"{len(outside)} of {len(rows)} welds are beyond the validity ranges of Efthymiou's factors: {named}"
-    ]
+    shortest = outside[0]["life_years"]
+    least = "" if shortest is None else f"; by the larger factor there and at the limit {shortest:.3g} years"
+    said = f"{len(outside)} of {len(rows)} welds are beyond the validity ranges of Efthymiou's factors"
+    return [f"{said}: {named}{least}"]

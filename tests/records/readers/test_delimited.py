@@ -80,6 +80,11 @@ def test_a_clock_or_count_of_another_name_is_no_channel(tmp_path: Path) -> None:
     )
     assert counted.channel_names == ("acc_x_g",)
     assert "column Sample counts rows" in counted.metadata["remarks"][0]
+    # pandas writes the index of a table first, without a name
+    indexed = read_text(
+        ",time_s,acc_x_g\n" + "".join(f"{k},{0.2 * k:.1f},{k % 3}\n" for k in range(8)), tmp_path
+    )
+    assert indexed.channel_names == ("acc_x_g",) and indexed.sample_rate_hz == pytest.approx(5.0)
 
 
 def test_words_with_numbers_among_them_are_no_record(tmp_path: Path) -> None:

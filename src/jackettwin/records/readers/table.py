@@ -110,8 +110,8 @@ def table_from_columns(
     """Return a table of equally long columns.
 
     The first column is the time if its name says so, or if it climbs evenly or has no name and does not
-    just count rows; a column of datetimes or of times of day is the time wherever it stands. Columns
-    without numbers, or that count rows, are left out and named in a remark.
+    just count rows, else the second if its name says so; a column of datetimes or of times of day is the time
+    wherever it stands. Columns without numbers, or that count rows, are left out and named in a remark.
 
     Raises
     ------
@@ -173,6 +173,9 @@ def _time_column(
         return dated[0]
     if not names:
         return None
+    # a data frame's index, written beside its columns, counts rows
+    if len(names) > 1 and _counts_rows(columns[0]) and not is_time(names[0]) and is_time(names[1]):
+        return 1 if columns[1].dtype.kind == "f" else None
     numeric, called_time = columns[0].dtype.kind == "f", is_time(names[0])
     if called_time and not numeric:
         refuse_ambiguous(str(columns[0][0]) if len(columns[0]) else "", names[0])
