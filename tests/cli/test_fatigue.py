@@ -327,6 +327,8 @@ def motion(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (("simulated", "{motion}", "--draws", "0"), "draws"),
         (("simulated", "{motion}", "--report", "life.txt"), "life.txt"),
         (("simulated", "{motion}", "--details", "{details}"), "details.0.member"),
+        # a twin without data of its own is updated by the record
+        (("{bare}", "{motion}", "--details", "{details}"), "details.0.member"),
         (("record", "simulated"), "RECORD"),
     ],
 )
@@ -335,7 +337,9 @@ def test_a_record_that_does_not_fit_is_refused_before_anything_is_updated(
 ) -> None:
     details = tmp_path / "details.yaml"
     details.write_text("details: [{name: flange, member: twer_1, position: 0, curve: F}]")
-    found = run(*(text.format(motion=motion, details=details) for text in arguments))
+    bare = tmp_path / "bare.yaml"
+    bare.write_text("structure: jacket15\nsupport: {law: kelvin-voigt}\n")
+    found = run(*(text.format(motion=motion, details=details, bare=bare) for text in arguments))
     assert found.exit_code == 2
     assert said in found.stderr and "Traceback" not in found.stderr
 

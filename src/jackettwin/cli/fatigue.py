@@ -188,7 +188,7 @@ def record_(
 
     models = partial(models_at_height, design_factor=design_factor, edition=edition)
     model, tubes = models(curve), read_details(details, models)
-    config = with_record(read_twin(twin), record)
+    config = with_record(read_twin(twin, records_follow=True), record)
     tubes.require_members(config.structure)
     readings, weather = readings_and_weather(config, record, feel_gravity=feel_gravity)
     with progress(count_steps(config), config.name) as step:
