@@ -1,5 +1,6 @@
 """What damage is made of, what a sensor more would tell, and the page that says so."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 
 from jackettwin.decks import read_structure
 from jackettwin.fatigue import WeldLife, count, models_at_height, weld_lives
+from jackettwin.fatigue.efthymiou import OutOfRange
 from jackettwin.records import Channel, Record
-from jackettwin.report.pages.life import life_quantity, write_life_page
+from jackettwin.report.pages.life import life_quantity, worst_welds, write_life_page
 from jackettwin.response import Sensor, build_system
 from jackettwin.sensing import MotionEstimate, Weather, motion_from, readings_of, sensed_model
 from jackettwin.soil import pinned
@@ -80,7 +82,12 @@ def test_the_page_colours_the_structure_by_its_shortest_life(
     of_first = {lives[0].weld.chord, lives[0].weld.brace}
     shortest = assembly.mesh.member[int(coloured.values.argmin())]
     assert assembly.structure.members[shortest].name in of_first
-    by_band = [damage_by_band(estimate, chart, MODELS, one) for one in lives]
+    within, beyond = (
+        [replace(one, weld=replace(one.weld, out_of_range=said)) for one in lives[:2]]
+        for said in ((), (OutOfRange("β", safe=False),))
+    )
+    assert worst_welds([*beyond, *within]) == [*within, *beyond]
+    by_band = [damage_by_band(estimate, chart, MODELS, one) for one in worst_welds(lives)]
     page = write_life_page(
         assembly, lives, tmp_path / "life.html", title="t", like="r", by_band=by_band,
         unseen={"": np.full(2, 0.3), "strain": np.full(2, 0.1)}, remarks=("a remark",),

@@ -222,10 +222,10 @@ def _report(
     found: RecordLife, models: ModelsAtHeight, path: Path, name: str, like: str, document: dict[str, Any]
 ) -> Path:
     """Write the page of a record's life."""
-    from jackettwin.report.pages.life import WORST, write_life_page
+    from jackettwin.report.pages.life import worst_welds, write_life_page
     from jackettwin.study import candidates, damage_by_band, with_one_more
 
-    worst, assembly = found.welds[:WORST], found.estimate.model.assembly
+    worst, assembly = worst_welds(found.welds), found.estimate.model.assembly
     with working("the page"):
         by_band = [damage_by_band(found.estimate, found.chart, models, one) for one in worst]
         unseen = with_one_more(found.estimate, found.chart, worst, candidates(assembly.structure))

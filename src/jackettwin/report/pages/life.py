@@ -15,7 +15,7 @@ from jackettwin.report.view.page import ColouredQuantity, View, render_view
 from jackettwin.structure import Assembly
 from jackettwin.version import __version__
 
-WORST = 10
+_WORST = 10
 _LONGEST_YEARS = 1e4
 """At which the colours of life end."""
 
@@ -32,6 +32,14 @@ def life_quantity(assembly: Assembly, welds: Sequence[WeldLife]) -> ColouredQuan
     names = [assembly.structure.members[m].name for m in assembly.mesh.member]
     values = np.array([years.get(name, _LONGEST_YEARS) for name in names])
     return ColouredQuantity("life, if all time is like the record", "years", values, log=True)
+
+
+def worst_welds(welds: Sequence[WeldLife]) -> list[WeldLife]:
+    """Return the welds that a page names, of welds with the shortest life first.
+
+    Those whose factors are doubtful, beyond their ranges, come after all others.
+    """
+    return sorted(welds, key=lambda one: bool(one.weld.doubts))[:_WORST]
 
 
 def write_life_page(
@@ -59,7 +67,7 @@ def write_life_page(
     OSError
         If the file cannot be written.
     """
-    worst = list(welds[:WORST])
+    worst = worst_welds(welds)
     view = render_view(View(assembly, (life_quantity(assembly, welds),)))
     sections = [
         PageSection("Worst joints", (_worst(worst, like), Text(tuple(remarks), style="warnings"))),
@@ -95,8 +103,8 @@ def _worst(worst: Sequence[WeldLife], like: str) -> Table:
         )
     heads = ("joint", "brace", "point", "z [m]", "largest range [MPa]", "design life [years]")
     caption = (
-        f"Which welds have least life, if all time is like {like}? Damage of a year is by the mean of the "
-        "tests, its interval that of 90 %."
+        f"Which welds have least life, if all time is like {like}? Those beyond the ranges of their factors "
+        "come last. Damage of a year is by the mean of the tests, its interval that of 90 %."
     )
     return Table(caption, (*heads, "damage of a year"), tuple(rows), text_columns=3)
 
