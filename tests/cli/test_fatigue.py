@@ -41,6 +41,10 @@ def test_a_series_has_the_keys_of_the_contract(stress: Path) -> None:
     assert found["largest_range_mpa"] == pytest.approx(100.0, rel=0.01)
     assert found["equivalent_range_mpa"]["m3"] == pytest.approx(80.0 * (300 / 1e7) ** (1 / 3), rel=0.02)
     assert found["damage"] == pytest.approx(300.0 * 80.0**5 / 10.0**16.130, rel=0.05)
+    # Rayleigh's ranges have Γ(1 + m/2) of a sine's to the power of m; Dirlik's fit and the slow cycle: 6 %
+    for m, sine in ((3, 1.329), (5, 3.323)):
+        one = found["equivalent_range_by_spectrum_mpa"][f"m{m}"]
+        assert one == pytest.approx(found["equivalent_range_mpa"][f"m{m}"] * sine ** (1.0 / m), rel=0.06)
 
 
 def test_units_and_thickness(stress: Path) -> None:
@@ -79,6 +83,7 @@ def test_gaps_are_scaled_and_said(stress: Path, tmp_path: Path) -> None:
     found = answer("stress", str(path), "--column", "leg")
     assert found["damage"] == pytest.approx(whole["damage"], rel=0.05)
     assert "25 % of the samples are missing" in found["warnings"][0]
+    assert found["equivalent_range_by_spectrum_mpa"] is None
     # a logger that stood still leaves no rows at all
     there = np.isfinite(values)
     rows = np.stack([t[there], values[there]], axis=1)

@@ -27,6 +27,9 @@ def test_a_narrow_band_has_rayleigh_ranges(method: str, m: float) -> None:
     sigma = np.sqrt(np.trapezoid(S, f))
     exact = 0.4 * (2.0 * np.sqrt(2.0) * sigma) ** m * gamma(1.0 + 0.5 * m)
     assert BY[method](f, S, m) == pytest.approx(exact, rel=0.03)
+    line = np.where(np.arange(f.size) == 8000, 1.0, 0.0)  # one frequency, of which the widths are 0/0
+    exact = 0.4 * (2.0 * np.sqrt(2.0) * np.sqrt(np.trapezoid(line, f))) ** m * gamma(1.0 + 0.5 * m)
+    assert BY[method](f, line, m) == pytest.approx(exact, rel=1e-6)
 
 
 @pytest.mark.parametrize("method", BY)

@@ -28,6 +28,8 @@ _USUAL_PA = (1e6, 1e9)
 _N_EQ = 1e7
 _GAP_STEPS = 10.0
 """Of the usual step, from which a step between rows is a gap: shorter ones hide no cycle that counts."""
+_EVEN = 0.1
+"""Of a step, by which all may differ for a spectrum."""
 _ONE_CYCLE, _FEWEST = 0.5, 100
 """Share of all damage that the largest cycle of so many or more does, from which it is said."""
 _ROSETTE = (1, 3, 4)
@@ -277,6 +279,7 @@ def _counted(
         "equivalent_range_mpa": {
             f"m{m}": 1e-6 * scale ** (1.0 / m) * equivalent_range(cycles, m, _N_EQ) for m in (3, 5)
         },
+        "equivalent_range_by_spectrum_mpa": _by_spectrum(values, table),
         "damage": damage,
         "damage_by_cycles": closed,
         "warnings": warnings,
@@ -348,6 +351,25 @@ def _across_gaps(
     return count(values[known]), 1.0 / (1.0 - missing), [said] if missing else []
 
 
+def _by_spectrum(values: FloatArray, table: ReadTable) -> dict[str, float] | None:
+    """Return the equivalent ranges by Dirlik's formula, which counts nothing.
+
+    None where samples are missing, do not follow each other evenly, or nothing moves.
+    """
+    from jackettwin.fatigue import dirlik
+
+    steps = np.zeros(0) if table.times_s is None else np.diff(table.times_s)
+    if table.sample_rate_hz is None and not steps.size:
+        return None
+    h = float(np.median(steps)) if table.sample_rate_hz is None else 1.0 / table.sample_rate_hz
+    even = not steps.size or bool(np.abs(steps - h).max() < _EVEN * h)
+    if not even or not np.isfinite(values).all() or values.size <= _FEWEST or np.ptp(values) == 0.0:
+        return None
+    S = 2.0 * h / values.size * np.abs(np.fft.rfft(values - values.mean())) ** 2
+    f, seconds = np.fft.rfftfreq(values.size, h), h * values.size
+    return {f"m{m}": 1e-6 * (seconds * dirlik(f, S, m) / _N_EQ) ** (1.0 / m) for m in (3, 5)}
+
+
 def _rows_missing(times_s: FloatArray | None) -> float:
     """Return the share of the time in which no row stands, where others follow each other by a usual step."""
     if times_s is None or times_s.size <= _FEWEST:
@@ -369,6 +391,12 @@ def _show(document: dict[str, Any]) -> None:
         f"largest range {document['largest_range_mpa']:.4g} MPa"
     )
     say(f"equivalent range of {_N_EQ:.0e} cycles: {m3:.4g} MPa (m = 3), {m5:.4g} MPa (m = 5)")
+    by_spectrum = document["equivalent_range_by_spectrum_mpa"]
+    if by_spectrum is not None:
+        say(
+            f"by its spectrum, as of a stationary stress (Dirlik): {by_spectrum['m3']:.4g} MPa (m = 3), "
+            f"{by_spectrum['m5']:.4g} MPa (m = 5)"
+        )
     say(
         f"damage {document['damage']:.4g} by {document['edition']}, curve {document['curve']}, "
         f"{document['environment']}"

@@ -15,6 +15,9 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import require
 
+_ONE_LINE = 1e-9
+"""Of α₂ from one, within which there is one frequency: its ranges are Rayleigh's, and the formulas 0/0."""
+
 
 def dirlik(frequency_hz: FloatArray, density: FloatArray, m: float) -> float:
     r"""Return :math:`\sum Δσ^m` of a second, of stress ranges Δσ in the unit of √(density · Hz).
@@ -44,6 +47,8 @@ def dirlik(frequency_hz: FloatArray, density: FloatArray, m: float) -> float:
     """
     l0, l1, l2, l4 = _moments(frequency_hz, density)
     peaks, gamma_2 = sqrt(l4 / l2), l2 / sqrt(l0 * l4)
+    if gamma_2 >= 1.0 - _ONE_LINE:
+        return float(peaks * (2.0 * sqrt(2.0 * l0)) ** m * gamma(1.0 + 0.5 * m))
     x = l1 / l0 * sqrt(l2 / l4)
     D1 = 2.0 * (x - gamma_2**2) / (1.0 + gamma_2**2)
     R = (gamma_2 - x - D1**2) / (1.0 - gamma_2 - D1 + D1**2)
@@ -64,7 +69,7 @@ def tovo_benasciutti(frequency_hz: FloatArray, density: FloatArray, m: float) ->
     l0, l1, l2, l4 = _moments(frequency_hz, density)
     a1, a2 = l1 / sqrt(l0 * l2), l2 / sqrt(l0 * l4)
     narrow = a2 * sqrt(l4 / l2) * (2.0 * sqrt(2.0 * l0)) ** m * gamma(1.0 + 0.5 * m)
-    if a2 >= 1.0 - 1e-9:
+    if a2 >= 1.0 - _ONE_LINE:
         return float(narrow)
     widths = 1.112 * (1.0 + a1 * a2 - (a1 + a2)) * np.exp(2.11 * a2) + (a1 - a2)
     b = (a1 - a2) * widths / (a2 - 1.0) ** 2
