@@ -86,7 +86,7 @@ def test_the_page_colours_the_structure_by_its_shortest_life(
         [replace(one, weld=replace(one.weld, out_of_range=said)) for one in lives[:2]]
         for said in ((), (OutOfRange("β", safe=False),))
     )
-    assert worst_welds([*beyond, *within]) == [*within, *beyond]
+    assert worst_welds([*beyond, *within]) == (*within, *beyond)
     by_band = [damage_by_band(estimate, chart, MODELS, one) for one in worst_welds(lives)]
     page = write_life_page(
         assembly, lives, tmp_path / "life.html", title="t", like="r", by_band=by_band,

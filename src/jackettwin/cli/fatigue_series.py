@@ -365,8 +365,8 @@ def _by_spectrum(values: FloatArray, table: ReadTable) -> dict[str, float] | Non
     even = not steps.size or bool(np.abs(steps - h).max() < _EVEN * h)
     if not even or not np.isfinite(values).all() or values.size <= _FEWEST or np.ptp(values) == 0.0:
         return None
-    S = 2.0 * h / values.size * np.abs(np.fft.rfft(values - values.mean())) ** 2
-    f, seconds = np.fft.rfftfreq(values.size, h), h * values.size
+    S = np.asarray(2.0 * h / values.size * np.abs(np.fft.rfft(values - values.mean())) ** 2, dtype=float)
+    f, seconds = np.asarray(np.fft.rfftfreq(values.size, h), dtype=float), h * values.size
     return {f"m{m}": 1e-6 * (seconds * dirlik(f, S, m) / _N_EQ) ** (1.0 / m) for m in (3, 5)}
 
 

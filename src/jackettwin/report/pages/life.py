@@ -34,12 +34,12 @@ def life_quantity(assembly: Assembly, welds: Sequence[WeldLife]) -> ColouredQuan
     return ColouredQuantity("life, if all time is like the record", "years", values, log=True)
 
 
-def worst_welds(welds: Sequence[WeldLife]) -> list[WeldLife]:
+def worst_welds(welds: Sequence[WeldLife]) -> tuple[WeldLife, ...]:
     """Return the welds that a page names, of welds with the shortest life first.
 
     Those whose factors are doubtful, beyond their ranges, come after all others.
     """
-    return sorted(welds, key=lambda one: bool(one.weld.doubts))[:_WORST]
+    return tuple(sorted(welds, key=lambda one: bool(one.weld.doubts))[:_WORST])
 
 
 def write_life_page(
