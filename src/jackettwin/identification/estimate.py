@@ -168,6 +168,9 @@ class Stabilisation:
     log_covariance : (n_poles, 2, 2) or None
         Covariance of (ln f, ln ζ).
     mode_shape_std : (n_poles, n_channels) or None
+    few_blocks : (n_poles, 2) or None
+        Factors on the standard deviations of ln f and ln ζ of a mode where few blocks of the record carry its
+        motion. ``log_covariance``, by which poles are judged, is without them.
     """
 
     order: Int64Array
@@ -180,6 +183,7 @@ class Stabilisation:
     cluster: Int64Array
     log_covariance: FloatArray | None = None
     mode_shape_std: FloatArray | None = None
+    few_blocks: FloatArray | None = None
 
     @classmethod
     def none(cls, n_channels: int) -> Stabilisation:

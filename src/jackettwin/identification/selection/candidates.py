@@ -75,12 +75,15 @@ class Candidate:
         Why it is not a mode.
     doubt : str or None
         Why it may not be a mode, unless the spectrum needs it.
+    widening : (float, float)
+        Factors on the standard deviations of ln f and ln ζ as a mode, for few blocks.
     """
 
     cluster: Cluster
     mode: ModalEstimate
     objection: str | None
     doubt: str | None
+    widening: tuple[float, float] = (1.0, 1.0)
 
     @property
     def is_tone(self) -> bool:
@@ -119,7 +122,9 @@ def candidates(
         objection = _objection(cluster, mode, settings, fewest)
         if cluster.representative in steady:
             objection = TONE_OBJECTION
-        out.append(Candidate(cluster, mode, objection, _doubt(cluster, mode, settings)))
+        wider = (1.0, 1.0) if poles.few_blocks is None else poles.few_blocks[cluster.representative]
+        doubt = _doubt(cluster, mode, settings)
+        out.append(Candidate(cluster, mode, objection, doubt, (float(wider[0]), float(wider[1]))))
     return out
 
 

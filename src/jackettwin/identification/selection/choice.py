@@ -120,7 +120,8 @@ def chosen_modes(
         mode if i in pairs else _steady(mode, lines, duration_s, scale)
         for i, mode in enumerate(flagged_modes)
     )
-    found = replace(found, modes=tuple(steady))
+    few = (_widened(mode, judged[i].widening) for mode, i in zip(steady, found.candidate, strict=True))
+    found = replace(found, modes=tuple(few))
     if settings.refine:
         found = replace(found, findings=(*found.findings, *_hidden(judged, found)))
         found = replace(found, modes=tuple(_widen_close_pair(m, found.modes) for m in found.modes))
@@ -132,8 +133,14 @@ def _widen_close_pair(mode: ModalEstimate, modes: Sequence[ModalEstimate]) -> Mo
     beside = (apart(mode, other) for other in modes if other is not mode)
     if mode.unrefined is not None or mode.log_covariance is None or min(beside, default=np.inf) > CLOSE_PAIR:
         return mode
-    wider = np.array([1.0, PAIR_WIDENING])
-    return mode.with_covariance(mode.log_covariance * np.outer(wider, wider))
+    return _widened(mode, (1.0, PAIR_WIDENING))
+
+
+def _widened(mode: ModalEstimate, factors: tuple[float, float]) -> ModalEstimate:
+    """Multiply the standard deviations of ln f and ln ζ of a mode that no fit describes."""
+    if mode.unrefined is not None or mode.log_covariance is None:
+        return mode
+    return mode.with_covariance(mode.log_covariance * np.outer(factors, factors))
 
 
 def _steady(mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: FloatArray) -> ModalEstimate:

@@ -62,6 +62,7 @@ def stabilisation(
         cluster=np.full(len(flat_order), -1, dtype=np.int64),
         log_covariance=_log_covariances(poles, sample_rate_hz),
         mode_shape_std=_shape_stds(poles, scale),
+        few_blocks=_few_blocks(poles, sample_rate_hz),
     )
 
 
@@ -128,9 +129,18 @@ def _log_covariances(poles: list[OrderPoles], sample_rate_hz: float) -> FloatArr
                 return None
             continue
         both = np.stack(log_deviations(p.eigenvalues, p.eigenvalue_deviations, sample_rate_hz))
-        both *= few_block_widening(both)[:, None]
         out.append(np.einsum("ibp,jbp->pij", both, both))
     return np.concatenate(out) if out else None
+
+
+def _few_blocks(poles: list[OrderPoles], sample_rate_hz: float) -> FloatArray | None:
+    """Return the widening of ln f and ln ζ of every pole, (n_poles, 2); None without deviations."""
+    each = [
+        few_block_widening(np.stack(log_deviations(p.eigenvalues, p.eigenvalue_deviations, sample_rate_hz))).T
+        for p in poles
+        if p.eigenvalue_deviations is not None
+    ]
+    return np.concatenate(each) if sum(map(len, each)) == sum(len(p.eigenvalues) for p in poles) > 0 else None
 
 
 def few_block_widening(deviations: FloatArray) -> FloatArray:
