@@ -170,6 +170,7 @@ FAULTS = (
     *_of("watching", rows=(
         ("kinds that are not monitored take a share of the promise", "+ np.log(watch.staked)", "- np.log(watch.staked)"),
         ("a doubted value keeps part of its distance", "np.maximum(distance / DOUBTED, 1.0) ** 2", "np.maximum(distance / DOUBTED, 1.0)"),
+        ("a value on which a slope rests alone is believed", "(h / (1.0 - h)) ** 2", "(h / h) ** 2"),
         ("an effect is by unit of the regressor, times it", "float(per_scale) / column.scale", "float(per_scale) * column.scale"),
         ("a jump's deviation is its variance", "(chance / len(JUMPS), jump**2)", "(chance / len(JUMPS), jump)"),
         ("a level counts half of what it shares with its reference", "apart = var - 2.0 * self.cov[:, LEVEL, REFERENCE]", "apart = var - self.cov[:, LEVEL, REFERENCE]"),
@@ -221,6 +222,9 @@ FAULTS = (
     *_of("change", rows=(
         ("a change takes back what is like it, not against it", 'way = -1.0 if answer.way == "takes_back"', 'way = 1.0 if answer.way == "takes_back"'),
         ("mixing two modes takes from both of them", "-phi * G[i, j] / before[j]", "phi * G[i, j] / before[j]"),
+        ("a monopile's head is kept upright in scour", "log(free[0]), log(free[3])", "log(upright[0]), log(upright[3])"),
+        ("a clock put back is read as put forward", "stamps[rows[later]] = again[rows[later]]", "stamps[rows[~later]] = again[rows[~later]]"),
+        ("every look corrects the last one", 'now["probability"] < _TURNED * left', 'now["probability"] < 0.0 * left'),
         ("scour stiffens the feet", "(np.exp(-per_m * chosen) for per_m", "(np.exp(per_m * chosen) for per_m"),
         ("a weakened brace keeps its stiffness", "_scaled(members, 0.7)", "_scaled(members, 1.0)"),
     )),

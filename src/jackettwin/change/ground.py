@@ -96,9 +96,8 @@ def scour_loss(piles: Foundation) -> Loss:
     before, after = (one.head() for one in (piles, piles.scoured(1.0)))
     K, L = before.steel + before.soil, after.steel + after.soil
     F, G = np.linalg.inv(K), np.linalg.inv(L)
-    return Loss(
-        *(log(over[i, i] / under[i, i]) for over, under, i in ((K, L, 0), (K, L, 2), (G, F, 0), (G, F, 3)))
-    )
+    upright, free = np.diag(K) / np.diag(L), np.diag(G) / np.diag(F)
+    return Loss(log(upright[0]), log(upright[2]), log(free[0]), log(free[3]))
 
 
 @cache
