@@ -4,6 +4,7 @@ export const UNKNOWN = "–";
 const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 const WIDE = 0.2;
 const PREFIXES: readonly (readonly [number, string])[] = [
+  [1e12, "T"],
   [1e9, "G"],
   [1e6, "M"],
   [1e3, "k"],

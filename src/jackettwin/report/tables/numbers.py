@@ -135,7 +135,7 @@ def factor(value: float | None) -> str:
     return UNKNOWN if value is None or not math.isfinite(value) else f"{float(f'{value:.{digits}g}'):g}"
 
 
-_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+_PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"))
 
 
 def quantity(value: float, unit: str, *, digits: int = 2) -> str:
