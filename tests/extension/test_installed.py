@@ -217,7 +217,7 @@ def known_twin(server: Server, seconds: float = 600.0) -> dict[str, Any]:
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         found: dict[str, Any] = server.get("/api/v1/assets/wtg/twin").json()
-        if found.get("parameters"):
+        if found["parameters"]["law"]:
             return found
         time.sleep(1.0)
     raise TimeoutError(str(found))

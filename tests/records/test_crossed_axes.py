@@ -70,5 +70,5 @@ def test_a_nacelle_across_is_no_exchange(tower: SimpleNamespace) -> None:
 
 def test_an_examination_says_so_and_blames_no_clock(tower: SimpleNamespace) -> None:
     seen = examine(exchanged(tower.record(1), (2, 6)), IdentificationSettings(blocks=0, refine=False))
-    assert [f.code for f in seen.findings if f.code.startswith("axes")] == ["axes_crossed"]
+    assert [f.code for f in seen.identification.findings if f.code.startswith("axes")] == ["axes_crossed"]
     assert [f.code for f in seen.quality.findings if f.code in ("another_time", "direction_unknown")] == []

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from jackettwin.files import named, null_for_nan
+from jackettwin.files import null_for_nan
 from jackettwin.service.web import auth
 from jackettwin.service.web.dependencies import WAITING, Route
 from jackettwin.service.web.problems import answers
@@ -29,7 +29,7 @@ def laws() -> Page[LawFamilyOut]:
     found = []
     for name in dict.fromkeys((*DEFAULT_LAWS, *known)):
         law = known[name]
-        each = [LawParameterOut(**named(p, "name", "words", "unit", "low", "high")) for p in law.parameters]
+        each = [LawParameterOut.model_validate(p, from_attributes=True) for p in law.parameters]
         parameters = [*each, _F0] if law.needs_frequency else each
         found.append(LawFamilyOut(name=name, words=law.words, parameters=parameters))
     return Page(items=found)
