@@ -238,7 +238,7 @@ FAULTS = (
         ("90 % of draws are 80 %", "(0.05, 0.5, 0.95)", "(0.1, 0.5, 0.9)"),
     )),
     *_of("report", rows=(
-        ("prefixes are of the next size", "((1e9, \"G\"), (1e6, \"M\"), (1e3, \"k\"))", "((1e9, \"M\"), (1e6, \"M\"), (1e3, \"k\"))"),
+        ("prefixes are of the next size", "((1e12, \"T\"), (1e9, \"G\"),", "((1e12, \"T\"), (1e9, \"M\"),"),
         ("± is a standard deviation", "half = NORMAL_90 * scale * std", "half = scale * std"),
     )),
     *_of("store", rows=(
