@@ -15,6 +15,8 @@ import httpx
 import plotly.graph_objects as go
 from playwright.sync_api import Page, expect, sync_playwright
 
+from jackettwin.client import Client
+from jackettwin.errors import InputError
 from pictures.drawn import DRAWN
 from pictures.table import write_table
 
@@ -123,16 +125,15 @@ def _demonstration(store: Path) -> Iterator[str]:
 
 
 def _newest_record(within_s: float = 600.0) -> str:
-    with httpx.Client(base_url=f"{ADDRESS}/api/v1/assets/demo") as api:
+    with Client(ADDRESS) as api:
         for _ in range(int(within_s)):
             time.sleep(1.0)
             try:
-                known = api.get("/twin").json().get("parameters", {})
-                records = api.get("/records", params={"limit": 1}).json().get("items", [])
-            except httpx.TransportError:  # it has not started
+                known, record = api.twin("demo")["parameters"], next(api.records("demo", limit=1), None)
+            except (httpx.TransportError, InputError):  # it has not started, or is being laid out
                 continue
-            if known.get("reported") and records and records[0]["status"] == "observed":
-                return str(records[0]["record_id"])
+            if known["reported"] and record and record["status"] == "observed":
+                return str(record["record_id"])
     raise TimeoutError(f"no report of the demonstration within {within_s:g} s")
 
 

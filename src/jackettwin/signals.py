@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import scipy  # scipy.ndimage is loaded where it is used
 
-from jackettwin.arrays import FloatArray, IntArray
+from jackettwin.arrays import BoolArray, FloatArray, Int64Array, IntArray
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -128,6 +128,16 @@ def resample(
             kept[start::up] = filtered(row)[m::down][: len(range(start, n_out, up))]
         out.append(kept)
     return np.array(out).reshape(-1, n_out)
+
+
+def runs(mask: BoolArray) -> Int64Array:
+    """Return start and length of every run of True.
+
+    >>> runs(np.array([True, False, True, True])).tolist()
+    [[0, 1], [2, 2]]
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return np.column_stack([edges[::2], edges[1::2] - edges[::2]]).astype(np.int64)
 
 
 def local_peaks(values: FloatArray, prominence: float = 0.0) -> IntArray:

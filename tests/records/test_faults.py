@@ -5,11 +5,12 @@ import pytest
 from scipy import ndimage, signal
 
 from jackettwin.records.quality import faults
+from jackettwin.signals import runs
 
 
 def test_runs_cover_both_ends() -> None:
-    assert faults.runs(np.array([True, True, False, True])).tolist() == [[0, 2], [3, 1]]
-    assert faults.runs(np.zeros(3, dtype=bool)).shape == (0, 2)
+    assert runs(np.array([True, True, False, True])).tolist() == [[0, 2], [3, 1]]
+    assert runs(np.zeros(3, dtype=bool)).shape == (0, 2)
 
 
 @pytest.mark.parametrize(("width", "height"), [(1, 10.0), (2, -20.0), (4, 50.0)])

@@ -112,11 +112,11 @@ def explained_share(change: Change, cause: Cause, kinds: Sequence[str]) -> float
     has a degree of freedom less than there are quantities; the direction misses by the usual or more, each
     with its share. A cause may be the likeliest of all and not be all: two changes at once have none.
     """
-    best = slice(_best(change), _best(change) + 1)
-    noise = _inverse(change.info[best])[0]
-    off = noise @ change.score[best][0] - cause.steps(cause.sizes)
     if len(kinds) < 2:
         return 1.0
+    best = _best(change)
+    noise = _inverse(change.info[best : best + 1])[0]
+    off = noise @ change.score[best] - cause.steps(cause.sizes)
     total = 0.0
     for times, share in TAIL.items():
         root = _misfit(cause, kinds, times)

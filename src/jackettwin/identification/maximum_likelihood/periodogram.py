@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
-from jackettwin.signals import running_median
+from jackettwin.signals import running_median, runs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -135,12 +135,10 @@ def periodogram(
 
 def _parts(y: FloatArray, sample_rate_hz: float, low_hz: float) -> list[slice]:
     """Return the parts of a record between the gaps that all channels have, or the whole if one is short."""
-    there = np.isfinite(y).any(axis=0)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], there, [False]]).astype(np.int8)))
-    parts = [slice(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
-    shortest = min((part.stop - part.start for part in parts), default=0)
-    long_enough = shortest >= MIN_CYCLES / low_hz * sample_rate_hz
-    return parts if long_enough else [slice(0, y.shape[1])]
+    found = runs(np.asarray(np.isfinite(y).any(axis=0)))
+    if not len(found) or found[:, 1].min() < MIN_CYCLES / low_hz * sample_rate_hz:
+        return [slice(0, y.shape[1])]
+    return [slice(int(start), int(start + length)) for start, length in found]
 
 
 def _of_stretch(

@@ -51,6 +51,7 @@ def stabilisation(
     shapes = np.concatenate([s for _, _, s in table]) if table else np.empty((0, n_channels), dtype=complex)
     stable = np.concatenate(flags) if flags else np.empty((0, 3), dtype=bool)
     flat_order = np.concatenate(order) if order else np.empty(0, dtype=int)
+    both = _both_deviations(poles, sample_rate_hz)
     return Stabilisation(
         order=flat_order.astype(np.int64),
         frequency_hz=np.concatenate([f for f, _, _ in table]) if table else np.empty(0),
@@ -60,9 +61,9 @@ def stabilisation(
         stable_damping=stable[:, 1],
         stable_shape=stable[:, 2],
         cluster=np.full(len(flat_order), -1, dtype=np.int64),
-        log_covariance=_log_covariances(poles, sample_rate_hz),
+        log_covariance=None if both is None else np.concatenate([_covariance(one) for one in both]),
         mode_shape_std=_shape_stds(poles, scale),
-        few_blocks=_few_blocks(poles, sample_rate_hz),
+        few_blocks=None if both is None else np.concatenate([few_block_widening(one).T for one in both]),
     )
 
 
@@ -120,27 +121,20 @@ def _inside(
     )
 
 
-def _log_covariances(poles: list[OrderPoles], sample_rate_hz: float) -> FloatArray | None:
-    """Return the covariance of (ln f, ln ζ) of every pole, (n_poles, 2, 2)."""
-    out = []
-    for p in poles:
-        if p.eigenvalue_deviations is None:
-            if len(p.eigenvalues):
-                return None
-            continue
-        both = np.stack(log_deviations(p.eigenvalues, p.eigenvalue_deviations, sample_rate_hz))
-        out.append(np.einsum("ibp,jbp->pij", both, both))
-    return np.concatenate(out) if out else None
-
-
-def _few_blocks(poles: list[OrderPoles], sample_rate_hz: float) -> FloatArray | None:
-    """Return the widening of ln f and ln ζ of every pole, (n_poles, 2); None without deviations."""
-    each = [
-        few_block_widening(np.stack(log_deviations(p.eigenvalues, p.eigenvalue_deviations, sample_rate_hz))).T
+def _both_deviations(poles: list[OrderPoles], sample_rate_hz: float) -> list[FloatArray] | None:
+    """Return the deviations of ln f and ln ζ of each order's poles, (2, n_blocks, n_poles); None without."""
+    if any(p.eigenvalue_deviations is None and len(p.eigenvalues) for p in poles):
+        return None
+    return [
+        np.stack(log_deviations(p.eigenvalues, p.eigenvalue_deviations, sample_rate_hz))
         for p in poles
         if p.eigenvalue_deviations is not None
-    ]
-    return np.concatenate(each) if sum(map(len, each)) == sum(len(p.eigenvalues) for p in poles) > 0 else None
+    ] or None
+
+
+def _covariance(both: FloatArray) -> FloatArray:
+    """Return the covariance of (ln f, ln ζ) of every pole, (n_poles, 2, 2)."""
+    return np.asarray(np.einsum("ibp,jbp->pij", both, both))
 
 
 def few_block_widening(deviations: FloatArray) -> FloatArray:

@@ -172,10 +172,10 @@ def fade_weight(y: FloatArray) -> FloatArray:
         missing = ~np.isfinite(row)
         if not missing.any() or missing.all():
             continue
-        ends = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]).astype(np.int8)))
-        for start, end in ends.reshape(-1, 2):
-            if end - start <= SHORT_GAP * n:
+        for start, length in signals.runs(missing):
+            if length <= SHORT_GAP * n:
                 continue
+            end = start + length
             weight[start:end] = 0.0
             for beside in (weight[max(start - reach, 0) : start][::-1], weight[end : end + reach]):
                 np.minimum(beside, rise[: len(beside)], out=beside)

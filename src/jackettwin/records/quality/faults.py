@@ -18,6 +18,7 @@ from jackettwin.findings import Finding
 from jackettwin.intervals import NORMAL_OF_MAD
 from jackettwin.records.processing.filters import bridge
 from jackettwin.records.record import SMALLEST
+from jackettwin.signals import runs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -76,16 +77,6 @@ STRAIGHT = 4.0 * float(np.finfo(np.float32).eps)
 """Largest bend of a line over its samples: three samples of single precision, the middle one twice."""
 SMALL_ROUNDING = 0.05
 """Largest share of that in the median bend, so that a line is no part of a smooth motion by chance."""
-
-
-def runs(mask: BoolArray) -> Int64Array:
-    """Return start and length of every run of True.
-
-    >>> runs(np.array([True, False, True, True])).tolist()
-    [[0, 1], [2, 2]]
-    """
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return np.column_stack([edges[::2], edges[1::2] - edges[::2]]).astype(np.int64)
 
 
 def is_constant(y: FloatArray) -> bool:

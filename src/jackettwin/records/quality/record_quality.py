@@ -19,6 +19,7 @@ from jackettwin.records.quality.sensor_changes import SensorChange, changes, des
 from jackettwin.records.quality.unit_errors import wrong_units
 from jackettwin.records.quality.unused import Unused, unused
 from jackettwin.records.record import LARGEST
+from jackettwin.signals import runs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -183,7 +184,7 @@ def _judge(
     channel, y = record.channels[i], record.data[i]
     n, vibrates = max(len(y), 1), channel.quantity in VIBRATIONS
     missing = ~np.isfinite(y)
-    longest = faults.runs(missing)[:, 1].max(initial=0)
+    longest = runs(missing)[:, 1].max(initial=0)
     empty = bool(missing.mean() > MAX_MISSING_SHARE) if len(y) else True
     dead = empty or (vibrates and faults.is_constant(y))
     none = np.zeros(len(y), dtype=np.bool_)

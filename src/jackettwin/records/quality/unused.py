@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from jackettwin.arrays import BoolArray, Int64Array
-from jackettwin.records.quality.faults import runs
+from jackettwin.signals import runs
 
 if TYPE_CHECKING:
     from jackettwin.records.record import Record
