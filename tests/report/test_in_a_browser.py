@@ -22,6 +22,7 @@ CHROMIUM = next((p for p in ("chromium", "chromium-browser", "google-chrome") if
 MEASURE = """<script>setTimeout(() => { const r = e => e.getBoundingClientRect();
 const parts = [...document.querySelectorAll("details.part")], closed = parts.filter(d => !d.open).length;
 const screens = document.documentElement.scrollHeight / 900;
+const answered = Math.max(...[...document.querySelectorAll("p.answer")].map(e => r(e).bottom));
 const appendix = r(document.getElementById("appendix")).top / 900;
 dispatchEvent(new Event("beforeprint"));
 const printed = [...document.querySelectorAll("details")].every(d => d.open);
@@ -32,7 +33,7 @@ const cut = [...document.querySelectorAll(".wide")].filter(e => e.scrollWidth > 
 document.title = JSON.stringify({page: document.documentElement.scrollWidth, window: innerWidth,
   wide: wide.length, tables: cut.map(e => e.innerText.slice(0, 60)),
   outside: boxes.filter(([a, b]) => a.left < b.left - 1 || a.right > b.right + 1).length,
-  parts: parts.length, closed, screens, appendix, printed, ms: performance.timing.domInteractive
+  parts: parts.length, closed, answered, screens, appendix, printed, ms: performance.timing.domInteractive
   - performance.timing.fetchStart});
 }, 200);</script>"""
 
@@ -84,6 +85,7 @@ def test_nothing_is_cut_off(page: Path, width: int) -> None:
         assert found["closed"] == found["parts"] > 5 and found["screens"] < 6.0
     else:
         assert 0 < found["closed"] < found["parts"]
+    assert 300 < found["answered"] < (1200 if width == 400 else 900)  # all five, in one look
     assert found["page"] <= found["window"]
     assert found["wide"] == found["outside"] == 0
     assert found["tables"] == []

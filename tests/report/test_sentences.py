@@ -69,6 +69,8 @@ def test_the_headline_tells_the_story() -> None:
     assert "The ground's damping is not determined by these 5 records." in lines
     assert any("the ground gives 58 % in fore-aft 1" in line for line in lines)
     assert lines[-1].startswith("The ground's damping would be determined by motion measured at the feet")
+    assert lines == tuple(line for q in sentences(ANSWERS).questions for line in q.answer)
+    assert all(len(q.answer) > 0 for q in sentences(ANSWERS).questions)
 
 
 @pytest.mark.parametrize(

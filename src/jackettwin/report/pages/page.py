@@ -18,6 +18,7 @@ from plotly.offline import get_plotlyjs
 from jackettwin.files import atomic_path
 from jackettwin.report.table import Table
 from jackettwin.report.tables.light import Light
+from jackettwin.report.tables.sentences import AnsweredQuestion
 
 
 @dataclass(frozen=True)
@@ -72,11 +73,10 @@ class Drawing:
 
 @dataclass(frozen=True)
 class FirstPage:
-    """A light, a headline, answers to questions, and drawings."""
+    """A light, questions with their answers, and drawings."""
 
     light: Light
-    headline: tuple[str, ...]
-    answers: tuple[tuple[str, tuple[str, ...]], ...]
+    questions: tuple[AnsweredQuestion, ...]
     drawings: tuple[Drawing, ...]
     kind: Literal["first"] = "first"
 

@@ -1,4 +1,4 @@
-"""The first page: a headline, five answers, and their drawings."""
+"""The first page: a light, five answers, and their drawings."""
 
 from __future__ import annotations
 
@@ -41,8 +41,7 @@ def first_page(a: Answers, said: FirstPageWords) -> FirstPage:
         drawings.append(Drawing("damping", caption, (bars,)))
     if speeds is None:
         drawings += ground_drawing(a)
-    answers = tuple((q.title, q.short) for q in said.questions)
-    return FirstPage(light(a), said.headline, answers, tuple(drawings))
+    return FirstPage(light(a), said.questions, tuple(drawings))
 
 
 def ground_drawing(a: Answers) -> list[Drawing]:

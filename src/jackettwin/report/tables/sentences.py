@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import expm1, log
 
@@ -39,9 +39,10 @@ _MOST = 4
 
 @dataclass(frozen=True)
 class AnsweredQuestion:
-    """A question of the first page with its answer in one or two sentences, and further sentences."""
+    """A question of the first page with its answer in few words, with numbers, and further sentences."""
 
     title: str
+    answer: tuple[str, ...]
     short: tuple[str, ...]
     more: tuple[str, ...] = ()
 
@@ -55,28 +56,46 @@ class FirstPageWords:
 
 
 def sentences(a: Answers) -> FirstPageWords:
-    """Return the first page in words."""
-    return FirstPageWords(
-        tuple(filter(None, _headline(a))),
-        (
-            AnsweredQuestion("Is the model right?", *_model(a)),
-            AnsweredQuestion("How stiff and how damped is the ground?", *_ground(a)),
-            AnsweredQuestion("Whose damping is it?", *owners(a)),
-            AnsweredQuestion("How far can this be trusted?", (*_trust(a), *_law(a))),
-            AnsweredQuestion("What to do next?", *next_steps(a)),
-        ),
+    """Return the first page in words.
+
+    The headline is the answers in the order of their questions; a ground that is not known comes first.
+    """
+    questions = (
+        AnsweredQuestion("Is the model right?", _right(a), *_model(a)),
+        AnsweredQuestion("How stiff and how damped is the ground?", _known(a), *_ground(a)),
+        AnsweredQuestion("Whose damping is it?", _said(a, owner_headline), *owners(a)),
+        AnsweredQuestion("How far can this be trusted?", _trusted(a), (*_trust(a), *_law(a))),
+        AnsweredQuestion("What to do next?", _next(a), *next_steps(a)),
     )
+    lost = bool(a.ground) and all(g.verdict == "unidentified" for g in a.ground) and not misfit_headline(a)
+    told = sorted(questions, key=lambda q: not (lost and q is questions[1]))
+    return FirstPageWords(tuple(line for q in told for line in q.answer), questions)
 
 
-def _headline(a: Answers) -> list[str]:
-    """Return the headline; a misfit or an unknown ground comes first."""
-    if misfit := misfit_headline(a):
-        return [misfit[0], *_stiff_enough(a), *objection_sentences(a)[1:], *misfit[1:]]
-    ground = [*_ground_headline(a), feet_headline(a), condition_headline(a)]
-    lead = [*objection_sentences(a), *_stiff_enough(a), *ground]
-    if a.ground and all(g.verdict == "unidentified" for g in a.ground):
-        lead = [*ground, *_stiff_enough(a)]
-    return [*lead, owner_headline(a), next_headline(a)]
+def _said(a: Answers, headline: Callable[[Answers], str]) -> tuple[str, ...]:
+    """Return the sentence of a headline, none if it is empty or the model does not agree with the data."""
+    return () if misfit_headline(a) else tuple(filter(None, [headline(a)]))
+
+
+def _right(a: Answers) -> tuple[str, ...]:
+    misfit, objections = misfit_headline(a), objection_sentences(a)
+    if misfit:
+        return (misfit[0], *_stiff_enough(a), *filter(None, objections[1:]))
+    return (*filter(None, objections), *_stiff_enough(a))
+
+
+def _known(a: Answers) -> tuple[str, ...]:
+    misfit = misfit_headline(a)
+    return tuple(misfit[1:2]) if misfit else (*_ground_headline(a), *_said(a, feet_headline))
+
+
+def _trusted(a: Answers) -> tuple[str, ...]:
+    return () if misfit_headline(a) else _said(a, condition_headline) or tuple(_identifiability(a))
+
+
+def _next(a: Answers) -> tuple[str, ...]:
+    misfit = misfit_headline(a)
+    return tuple(misfit[2:]) if misfit else _said(a, next_headline)
 
 
 def span_words(span: Span, unit: str) -> str:
@@ -378,13 +397,7 @@ def _trust(a: Answers) -> list[str]:
         ]
     else:
         said = [f"Data: {count(len(a.modes), 'mode')} given as targets."]
-    judged = [g for g in a.ground if g.verdict]
-    if judged:
-        known = [g for g in judged if g.verdict == "identified"]
-        said.append(
-            f"Identifiability: {len(known)} of {count(len(judged), 'ground parameter')} known within a "
-            f"factor of {a.usable:g}."
-        )
+    said += _identifiability(a)
     stated = sorted(m.model_error for m in a.modes if m.fits_frequency and m.model_error > 0.0)
     said.append(
         f"Model error: {_errors(stated)} of frequencies, from the tolerances of drawings and sea."
@@ -392,6 +405,18 @@ def _trust(a: Answers) -> list[str]:
         else "Model error: the twin sets all tolerances to zero; intervals are those of an exact model."
     )
     return [*said, *_if_off(a)]
+
+
+def _identifiability(a: Answers) -> list[str]:
+    """Return how many parameters of the ground are known, nothing without verdicts."""
+    judged = [g for g in a.ground if g.verdict]
+    known = [g for g in judged if g.verdict == "identified"]
+    if not judged:
+        return []
+    of = count(len(judged), "ground parameter")
+    return [
+        f"{len(known)} of {of} {'is' if len(judged) == 1 else 'are'} known within a factor of {a.usable:g}."
+    ]
 
 
 def _errors(stated: list[float]) -> str:
