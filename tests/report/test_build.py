@@ -27,6 +27,7 @@ class _Page(HTMLParser):
         self.text: list[str] = []
         self.figures: list[str] = []
         self.names: list[str] = []
+        self.ids: list[str] = []
         self.scripts = 0
         self.buttons = 0
         self._inside = ""
@@ -35,6 +36,7 @@ class _Page(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.buttons += tag == "button"
         self.addresses += [value or "" for name, value in attrs if name in ("src", "href")]
+        self.ids += [value or "" for name, value in attrs if name == "id"]
         self._inside = tag
         if tag == "script":
             self.scripts += 1
@@ -69,6 +71,7 @@ def test_report_is_one_small_file_that_needs_no_network(report: Path) -> None:
     assert page.names.count("plotly") == 1  # the library, once
     assert "plotly.js v" in unpacked(page.figures[page.names.index("plotly")])[:500]
     assert "@import" not in html.split("</style>")[0]
+    assert len(set(page.ids)) == len(page.ids)  # a button of one part opens that part
     assert report.stat().st_size < 2.6e6
 
 

@@ -40,7 +40,7 @@ def test_the_posterior_is_drawn_with_units(
     weighed: TwinResult, assert_units: Callable[[go.Figure], None]
 ) -> None:
     plots = {b.name: b.figure for b in posterior(weighed) if isinstance(b, Plot)}
-    assert set(plots) == {"posterior", "profiles"}
+    assert set(plots) == {"correlation", "profiles"}
     for figure in plots.values():
         assert_units(figure)
 

@@ -128,7 +128,7 @@ def of_parameters(o: Outlets) -> Iterator[tuple[str, str, Value | float]]:
 
 def of_corner(o: Outlets) -> Iterator[tuple[str, str, Value | float]]:
     """Yield what the figure of the posterior marks: medians in its cells, ends of intervals as lines."""
-    figure = o.figures["posterior"]
+    figure = o.figures["correlation"]
     names = list(o.document["updates"][0]["parameters"])
     n = len(names)
     for trace in (t for t in figure["data"] if t.get("name") == "medians"):

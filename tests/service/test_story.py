@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import gzip
 import json
+import re
+from base64 import b64encode
 from datetime import timedelta
+from hashlib import sha256
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 import pytest
+from plotly.offline import get_plotlyjs
 from tests.service.conftest import make_service
 
 from jackettwin.service import demonstration
@@ -101,6 +105,9 @@ def test_the_shipped_demonstration_is_of_this_program(
             assert results.find_stiffness(connection, "demo", 1)["stiffness_in_time"]
             page = gzip.decompress(results.find_report(connection, "demo", 1) or b"").decode()
             assert "Is the model right?" in page and len(page) > 1_500_000  # with the library of its plots
+            ran = re.findall(r"<(?:style|script)>(.*?)</", page, re.DOTALL) + [get_plotlyjs()]
+            hashes = [b64encode(sha256(text.encode()).digest()).decode() for text in ran]
+            assert len(ran) == 3 and all(one in page[: page.index("<title>")] for one in hashes)
             assert page.index('id="verdict"') < page.index('id="stiffness-through-time"')
         assert [arrive(service, record) for record in shipped_records()] == 4 * [False] + [True]
         with reading(service.database) as connection:

@@ -18,13 +18,18 @@ from xml.etree import ElementTree
 
 import httpx
 import numpy as np
+import plotly.graph_objects as go
 import pytest
 import uvicorn
 from playwright.sync_api import Browser, Locator, Page, Route, expect, sync_playwright
 from tests.service.conftest import NOON, PASSWORD, TWIN, description, hour, make_service, record_file, turn
 from tests.service.servers import CHROMIUM, free_port
 
+from jackettwin.decks import read_structure
 from jackettwin.files import find_file
+from jackettwin.report.pages.page import Embedded, PageSection, Plot, Text, page_text
+from jackettwin.report.view.page import View, render_view
+from jackettwin.report.view.quantities import thickness_quantities
 from jackettwin.service.context import Service
 from jackettwin.service.demonstration import lay_out
 from jackettwin.service.web import pages
@@ -32,6 +37,7 @@ from jackettwin.service.web.app import EXAMPLES, create_app
 from jackettwin.service.web.catalogue import add_text_version
 from jackettwin.store import Packet, journal, people, results, streams, writing
 from jackettwin.store.tables import modes
+from jackettwin.structure import assemble
 
 APP = Path(__file__).parents[2] / "app"
 AXE = APP / "node_modules" / "axe-core" / "axe.min.js"
@@ -141,6 +147,7 @@ def opened(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterat
     patch.undo()
 
 
+RED = "rgb(255, 0, 0)"
 SCRIPT = "<img src=x onerror=\"document.title='injected'\"><script>document.title='injected'</script>"
 
 
@@ -908,17 +915,42 @@ def test_a_report_is_framed_once_there_is_one(opened: Open, monkeypatch: pytest.
     expect(page.get_by_role("heading", name="No report yet")).to_be_visible()
     assert page.locator("iframe").count() == 0
     monkeypatch.setattr(results, "find_supports", lambda *_: {"law": "zener", "records": 4, "reported": True})
-    monkeypatch.setattr(results, "find_report", lambda *_: gzip.compress(b"<p>five answers</p>"))
+    heat = go.Figure(go.Heatmap(z=[[1, 2], [2, 1]]), {"height": 300})
+    inside = render_view(View(jacket := assemble(read_structure("jacket15")), thickness_quantities(jacket)))
+    blocks = (
+        Text(("five answers",)),
+        Plot("heat", "How warm?", heat),
+        Embedded("space", "How?", inside, "Look"),
+    )
+    told = page_text([PageSection("Verdict", blocks)], title="told")
+    monkeypatch.setattr(results, "find_report", lambda *_: gzip.compress(told.encode()))
     with writing(opened.service.database) as connection:
         journal.tell(connection, "state", "wtg", {}, opened.service.now())
-    expect(page.frame_locator("iframe.report").get_by_text("five answers")).to_be_visible()
-    page.frames[-1].evaluate("window.print = () => document.body.append('on paper')")  # the report's own
+    report = page.frame_locator("iframe.report")
+    expect(report.get_by_text("five answers")).to_be_visible()
+    expect(report.locator("#heat .heatmaplayer image")).to_be_attached()  # drawn without `unsafe-*`
+    report.locator("#heat").hover()
+    expect(report.locator("#heat .hovertext")).to_be_attached()
+    expect(report.locator("#heat .modebar")).to_have_css("position", "absolute")  # the library's own sheet
+    assert report.locator("#heat .modebar-btn").count() and not report.locator("[data-title*=Share]").count()
+    with page.expect_download():
+        report.locator("#heat .modebar-btn").first.click()
+    report.get_by_role("button", name="Look").click()
+    expect(report.frame_locator("iframe").locator("canvas").first).to_be_visible()
+    policy = httpx.get(opened.url + "/assets/wtg/report").headers["content-security-policy"]
+    assert "script-src 'sha256-" in policy and "unsafe" not in policy and "sandbox" in policy
+    page.frames[1].evaluate("window.print = () => document.body.append('on paper')")  # the report's own
     page.get_by_role("button", name="Print or PDF").click()
     expect(page.frame_locator("iframe.report").get_by_text("on paper")).to_be_visible()
     page.keyboard.press("Control+p")
     expect(page.frame_locator("iframe.report").get_by_text("on paperon paper")).to_be_visible()
     assert b"five answers" in taken(page, "HTML")
     assert opened.said == []
+    hostile = told.replace("<main>", f"<main>{SCRIPT}<p id=red style='color: red'>red</p>")
+    monkeypatch.setattr(results, "find_report", lambda *_: gzip.compress(hostile.encode()))
+    page.goto("/assets/wtg/report")  # words that nobody escaped
+    assert page.title() == "told" and page.locator("#red").evaluate("e => getComputedStyle(e).color") != RED
+    assert len(opened.said) >= 3
 
 
 def test_what_there_is_not_says_so(opened: Open) -> None:

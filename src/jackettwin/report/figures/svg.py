@@ -67,7 +67,7 @@ class Canvas:
         return Markup(
             '<svg xmlns="http://www.w3.org/2000/svg" font-family="sans-serif" font-size="13" '
             f'viewBox="0 0 {self.width:g} {self.height:g}" role="img" '
-            f'aria-label="{escape(self.title)}" style="max-width:{self.width:g}px">'
+            f'aria-label="{escape(self.title)}" width="{self.width:g}">'
             f"{''.join(self._parts)}</svg>"
         )
 

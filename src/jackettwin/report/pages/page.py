@@ -7,12 +7,14 @@ import re
 from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
+from hashlib import sha256
 from pathlib import Path
 from typing import Literal
 
 import plotly.graph_objects as go
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from plotly.offline import get_plotlyjs
 
 from jackettwin.files import atomic_path
@@ -118,21 +120,50 @@ class PageSection:
 def page_text(sections: Sequence[PageSection], *, title: str, subtitle: str = "") -> str:
     """Return one self-contained HTML page, with the plotting library only if there is a plot."""
     library = packed(get_plotlyjs()) if any(_plots(sections)) else ""
-    return _rendered("page.html.j2", sections=sections, title=title, subtitle=subtitle, plotly=library)
+    return _rendered(
+        "page.html.j2", sections=sections, title=title, subtitle=subtitle, plotly=library, rules=rules()
+    )
 
 
 _LIBRARY = re.compile(r'(<script type="text/plain" class="packed" id="plotly">)[^<]*')
 """The library that draws the plots of a page, the same in each."""
+_NO_LIBRARY = "'none-yet'"
+_BLOCKS = re.compile(r'<(style|script)(?: type="module")?>(.*?)</\1>', re.DOTALL)
+"""What a browser applies or runs of a page."""
+
+
+@cache
+def rules() -> str:
+    """Return the rules of a page for its browser (Content-Security-Policy): nothing is loaded from elsewhere.
+
+    What may run are the scripts and styles of our own templates and the plotting library, by hash; of a page
+    its words and numbers add nothing, whatever they are. The library makes an empty style sheet and fills it
+    rule by rule, so that the hash of no style at all is among them.
+    """
+    empty: dict[str, object] = {"title": "", "sections": (), "subtitle": "", "plotly": "", "rules": ""}
+    pages = _rendered("page.html.j2", **empty), _rendered("view.html.j2", title="", facts=(), data="")
+    blocks = [block for page in pages for block in _BLOCKS.findall(page)]
+    styles = [_hash(text) for kind, text in blocks if kind == "style"]
+    scripts = [_hash(text) for kind, text in blocks if kind == "script"]
+    return (
+        f"default-src 'none'; script-src {' '.join(scripts)} {_hash(get_plotlyjs())}; "
+        f"style-src {' '.join(styles)} {_hash('')}; img-src data: blob:; base-uri 'none'; form-action 'none'"
+    )
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 
 
 def without_library(page: str) -> str:
     """Return a page without the library that draws its plots."""
-    return _LIBRARY.sub(r"\1", page)
+    return _LIBRARY.sub(r"\1", page).replace(str(escape(_hash(get_plotlyjs()))), _NO_LIBRARY, 1)
 
 
 def with_library(page: str) -> str:
     """Return a page that :func:`without_library` made with the installed library in its place."""
-    return _LIBRARY.sub(lambda found: found[1] + packed(get_plotlyjs()), page)
+    known = page.replace(_NO_LIBRARY, str(escape(_hash(get_plotlyjs()))), 1)
+    return _LIBRARY.sub(lambda found: found[1] + packed(get_plotlyjs()), known)
 
 
 def write_page(sections: Sequence[PageSection], path: Path, *, title: str, subtitle: str = "") -> Path:

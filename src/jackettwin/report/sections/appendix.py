@@ -46,7 +46,7 @@ def posterior(result: TwinResult) -> list[Block]:
     return [
         *blocks,
         Plot(
-            "posterior",
+            "correlation",
             f"{shown.law}: how are the parameters correlated? Draws from the posterior on logarithmic axes; "
             "line: prior; dotted: 90 %.",
             draw.corner(shown, k),
