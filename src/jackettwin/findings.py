@@ -371,8 +371,8 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "multiple_of_order": Kind(
         "warning",
-        "lies at half or twice the frequency of a peak that falls off faster than that of a mode: both may "
-        "be orders of a rotor; add the rotor's speed as a channel [rpm]",
+        "lies at half or twice the frequency of another peak, and neither falls off as slowly as that of a "
+        "mode: both may be orders of a rotor; add the rotor's speed as a channel [rpm] or condition",
     ),
     "steady_envelope": Kind(
         "warning",

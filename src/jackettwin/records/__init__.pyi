@@ -3,7 +3,7 @@ from .conditions import with_conditions as with_conditions
 from .processing.merge import merge as merge, shared_channels as shared_channels
 from .processing.prepare import bandpass as bandpass, decimate as decimate, detrend as detrend
 from .processing.spectra import spectral_matrix as spectral_matrix, welch_densities as welch_densities
-from .processing.tones import less_phase as less_phase
+from .processing.tones import knows_rotor_speed as knows_rotor_speed, less_phase as less_phase
 from .processing.yaw import (
     knows_yaw as knows_yaw,
     to_global_axes as to_global_axes,

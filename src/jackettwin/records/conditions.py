@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jackettwin.records.processing.tones import rotor_speed
+from jackettwin.records.processing.tones import ROTOR_STATES, rotor_speed
 from jackettwin.records.processing.yaw import knows_yaw, yaw_of
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def with_conditions(record: Record) -> Record:
     if known.get("yaw_deg") is None and knows_yaw(record):
         known["yaw_deg"] = float(np.degrees(np.mean(yaw_of(record))))
     if known.get("state") is None and _mean(record, "rotor speed") is not None:
-        known["state"] = "rotor standing" if rotor_speed(record) is None else "rotor turning"
+        known["state"] = ROTOR_STATES[rotor_speed(record) is not None]
     return replace(record, conditions=_means(record) | known)
 
 

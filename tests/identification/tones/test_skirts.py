@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jackettwin.identification.tones.skirts import LESS_LIKELY, are_orders, missing_skirts, through_window
+from jackettwin.identification.tones.skirts import (
+    LESS_LIKELY,
+    are_orders,
+    missing_skirts,
+    peak_near,
+    through_window,
+)
 
 DURATION_S, F, HALF, NUMBER = 600.0, 0.9, 4.0, 60
 """Half width of the peaks in lines."""
@@ -50,16 +56,34 @@ def test_what_lies_at_a_multiple_of_an_order_is_one_unless_it_shows_skirts() -> 
     """An order, its double as it is and with skirts, a mode elsewhere, and a peak too broad to judge."""
     f, zeta = np.array([0.5, 1.006, 1.0, 1.3, 1.5]), np.full(5, 0.006)
     missing = np.array([8.0, 0.5, -3.0, 0.5, np.nan])
-    assert are_orders(f, zeta, missing).tolist() == [True, True, False, False, False]
+    assert are_orders(f, zeta, missing, 6).tolist() == [True, True, False, False, False]
     # what is too close to others to be judged is an order if its half has no skirts, not if it is undecided
     missing[1] = np.nan
-    assert are_orders(f, zeta, missing)[1]
-    assert not are_orders(f, zeta, np.append(4.0, missing[1:])).any()
-    # neither is without skirts by itself
-    assert are_orders(f, zeta, np.array([2.5, 1.0, -3.0, 0.5, np.nan])).tolist() == [True, True, *3 * [False]]
-    assert not are_orders(f, zeta, np.array([2.0, 0.4, -3.0, 0.5, np.nan])).any()
+    assert are_orders(f, zeta, missing, 6)[1]
+    assert not are_orders(f, zeta, np.append(4.0, missing[1:]), 2).any()
+    # neither is without skirts by itself; the middles of broad peaks are known to half a per cent
+    both = np.array([2.5, 1.0, -3.0, 0.5, np.nan])
+    assert are_orders(f, 0.2 * zeta, both, 6).tolist() == [True, True, *3 * [False]]
+    assert not are_orders(np.array([0.5, 1.012, 1.1, 1.3, 1.5]), 0.2 * zeta, both, 6).any()
     # no rotor turns so fast that these are its orders
-    assert not are_orders(4.0 * f, zeta, np.array([2.5, 1.0, -3.0, 0.5, np.nan])).any()
+    assert not are_orders(4.0 * f, zeta, both, 2).any()
+    # what does not show in two sensors is no evidence of modes, as it is in six
+    undecided, shown = np.array([-0.6, 0.3, -3.0, 0.5, np.nan]), np.array([-0.6, -0.5, -3.0, 0.5, np.nan])
+    assert are_orders(f, zeta, undecided, 2).tolist() == [True, True, *3 * [False]]
+    assert not are_orders(f, zeta, undecided, 6).any()
+    assert not are_orders(f, zeta, shown, 2).any()
+
+
+def test_a_peak_that_is_no_mode_is_found_where_it_is(rng: np.random.Generator) -> None:
+    """Between two Welch lines, beside a stronger one out of reach: its frequency and its shape."""
+    lines = 0.1 * (rng.standard_normal((2, 600)) + 1j * rng.standard_normal((2, 600)))
+    lines[:, 251:256] += np.outer([1.0, -0.5], [1.0, 2.0, 3.0, -2.0, 1.0])
+    lines[1, 266:269] += 9.0
+    f, zeta, shape = peak_near(lines, DURATION_S, 0.42, 8.0 / DURATION_S)
+    assert f == 253 / DURATION_S
+    assert 16 / 6 == pytest.approx(zeta * f * DURATION_S)
+    # noise of a tenth in four lines of the peak's rms of two
+    assert shape[1] / shape[0] == pytest.approx(-0.5, abs=0.1)
 
 
 @pytest.mark.parametrize("half_lines", [0.5, 1.0, 3.0])

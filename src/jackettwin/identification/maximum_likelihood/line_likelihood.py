@@ -179,13 +179,27 @@ def likelihood_interval(log_likelihood: FloatArray) -> tuple[float, float, float
     [-5.0, -5.49, -4.51, 0.3]
     """
     log_zeta, values = between_nodes(log_likelihood)
-    values = values - values.max()
-    weight = np.exp(values)
+    weight = np.exp(values - values.max())
     middle = float(np.interp(0.5 * weight.sum(), np.cumsum(weight) - 0.5 * weight, log_zeta))
-    low, high = _where_above(log_zeta, values, -0.5 * NORMAL_90**2)
-    far_low, far_high = _where_above(log_zeta, values, -0.5 * NORMAL_95**2)
+    low, high = likelihood_ends(log_likelihood, NORMAL_90)
+    far_low, far_high = likelihood_ends(log_likelihood, NORMAL_95)
     middle = min(max(middle, far_low), far_high)
     return middle, min(low, middle), max(high, middle), (far_high - far_low) / (2.0 * NORMAL_95)
+
+
+def likelihood_ends(log_likelihood: FloatArray, half_width: float) -> tuple[float, float]:
+    """Return the ends of ln ζ of an interval by likelihood ratio.
+
+    Parameters
+    ----------
+    log_likelihood : (n_nodes,)
+        At ``LOG_ZETA``.
+    half_width : float
+        Of the interval of a normal likelihood, in standard deviations.
+    """
+    log_zeta, values = between_nodes(log_likelihood)
+    low, high = _where_above(log_zeta, values - values.max(), -0.5 * half_width**2)
+    return low, high
 
 
 def _where_above(x: FloatArray, values: FloatArray, level: float) -> list[float]:

@@ -23,6 +23,7 @@ from jackettwin.identification.selection.candidates import (
 )
 from jackettwin.identification.selection.neighbours import apart, members_of_pairs
 from jackettwin.identification.selection.screening import (
+    LINES_OF_A_PEAK,
     perhaps_two,
     screen,
     with_unknown_damping,
@@ -32,7 +33,7 @@ from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.envelopes import is_suspiciously_steady
 from jackettwin.identification.tones.mains import is_mains
 from jackettwin.identification.tones.sinusoid import transform
-from jackettwin.identification.tones.skirts import LESS_LIKELY, are_orders, missing_skirts
+from jackettwin.identification.tones.skirts import LESS_LIKELY, are_orders, missing_skirts, peak_near
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -151,18 +152,25 @@ def _steady(mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: 
     return mode.flagged(ModeStatus.DOUBTFUL, Finding("steady_envelope"))
 
 
-def _skirted(
-    modes: Sequence[ModalEstimate], lines: ComplexArray, duration_s: float, scale: FloatArray
-) -> tuple[ModalEstimate, ...]:
-    """Flag modes whose peaks fall off faster than those of any mode, and others at multiples of them."""
-    f = np.array([m.frequency_hz for m in modes])
-    zeta = np.array([m.damping_ratio for m in modes])
+def _skirted(modes: Sequence[ModalEstimate], known: Evidence) -> tuple[ModalEstimate, ...]:
+    """Flag modes whose peaks fall off faster than those of any mode, and others at multiples of them.
+
+    Clear peaks that belong to no mode are not flagged, but modes may lie at a multiple of them.
+    """
+    reach_hz = LINES_OF_A_PEAK / known.duration_s
+    alone = [
+        peak_near(known.lines, known.duration_s, peak, reach_hz)
+        for peak in known.peaks_hz
+        if not any(abs(m.frequency_hz - peak) < reach_hz + m.damping_ratio * peak for m in modes)
+    ]
+    peaks = [*((m.frequency_hz, m.damping_ratio, m.mode_shape / known.scale) for m in modes), *alone]
+    f, zeta = (np.array([peak[column] for peak in peaks]) for column in (0, 1))
     missing = np.array([
-        missing_skirts(lines, duration_s, f[i], zeta[i], mode.mode_shape / scale, np.delete(f, i))
-        for i, mode in enumerate(modes)
+        missing_skirts(known.lines, known.duration_s, *peak, np.delete(f, i)) for i, peak in enumerate(peaks)
     ], dtype=float)  # fmt: skip
     found = []
-    for mode, order, multiple in zip(modes, missing > LESS_LIKELY, are_orders(f, zeta, missing), strict=True):
+    multiples = are_orders(f, zeta, missing, len(known.scale)) & (not known.speed_known)
+    for mode, order, multiple in zip(modes, missing > LESS_LIKELY, multiples, strict=False):
         if order or multiple:
             code = "no_skirts" if order else "multiple_of_order"
             mode = mode.flagged(ModeStatus.DOUBTFUL, Finding(code))
@@ -217,7 +225,7 @@ def screened_choice(
             mode = beside_tones(c.mode, ranges)
             restored[i] = with_unknown_damping(mode) if passing is None else mode
     # an order of unknown damping betrays the one at twice its frequency
-    skirted = _skirted((*chosen.modes, *restored.values()), known.lines, known.duration_s, known.scale)
+    skirted = _skirted((*chosen.modes, *restored.values()), known)
     own, beside = skirted[: len(chosen.modes)], skirted[len(chosen.modes) :]
     judged_modes = screen(own, known, beside=beside)
     modes = dict(zip((*chosen.candidate, *restored), (*judged_modes, *beside), strict=True))

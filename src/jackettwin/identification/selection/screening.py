@@ -47,7 +47,7 @@ from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLo
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.intervals import NORMAL_95
-from jackettwin.records import channel_axes, comparable_channels
+from jackettwin.records import channel_axes, comparable_channels, knows_rotor_speed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -164,6 +164,8 @@ class Evidence:
         Clear peaks of any channel.
     sensors : bool
         Whether channels are sensors. If they are principal components, a mode may move a single one.
+    speed_known : bool
+        Whether the speed of a rotor is measured or stated: where its orders are is then known.
     """
 
     looks: tuple[SecondLook, ...]
@@ -175,6 +177,7 @@ class Evidence:
     comparable: BoolArray
     peaks_hz: tuple[float, ...]
     sensors: bool = True
+    speed_known: bool = False
 
     def in_sea(self, frequency_hz: float) -> bool:
         """Whether the sea, where its period is stated, has forces at a frequency."""
@@ -224,6 +227,7 @@ def evidence(
         peaks_hz=tuple(sorted({f for own in peaks for f in own})),
         comparable=comparable | np.eye(len(moving), dtype=np.bool_),
         sensors=sensors,
+        speed_known=knows_rotor_speed(conditions),
     )
 
 

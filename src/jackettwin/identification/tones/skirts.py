@@ -28,16 +28,25 @@ at 0.01 and 6 % at 0.03."""
 BOTH_LESS_LIKELY = 3.0
 """The same for the sum of two peaks at a multiple of each other, neither of which shows skirts: two modes are
 there by chance in a few per cent of cases, and one in twenty of such pairs has more."""
+SHOWN = -1.0
+"""Excess below which a peak is taken to have skirts though it lies at a multiple of an order. With fewer than
+``FEW_SENSORS``, the least of that sum: what else moves hides the skirts there, of modes (−0.5 to 1) as of
+orders (−1 to 5). Two modes are a multiple of each other in one of a hundred pairs and two orders always, so
+that orders are the likelier if one turbine in ten turns at a speed that nobody tells."""
+FEW_SENSORS = 4
 HIGHEST_3P_HZ = 1.8
 """Greatest frequency of the lower of these: 3P of 36 revolutions a minute."""
-SHOWN = -1.0
-"""Excess below which a peak is taken to have skirts though it lies at a multiple of an order."""
 MULTIPLES = np.array([0.5, 2.0])
 """Of 3P and 6P to each other; 9P is weaker, and the more multiples, the more modes lie at one by chance."""
+CENTRE = 0.01
+"""Least difference of two logarithms of frequency that are a multiple of each other's: the middle of a peak
+that is some per cent broad is known to about half a per cent, however narrow a mode has been fitted to it."""
 REACH = 6.0
 """Distance from the peak that is compared, in half widths of the mode."""
 FEWEST_LINES, MOST_LINES = 16, 40
 """Fewest and most lines on either side."""
+AROUND = 2
+"""Lines on either side of a peak that give its shape and its power."""
 WIDTHS = tuple(map(float, np.exp(np.linspace(np.log(0.15), np.log(12.0), 11))))
 """Half widths that are tried, in lines: a few lines of a broad peak look like a narrow one, and through the
 window a narrow one is a line and a half wide."""
@@ -102,6 +111,28 @@ def missing_skirts(
     return INDEPENDENT * (without - with_skirts)
 
 
+def peak_near(
+    lines: ComplexArray, duration_s: float, frequency_hz: float, reach_hz: float
+) -> tuple[float, float, ComplexArray]:
+    """Return frequency, damping ratio and shape of the peak nearest to a coarse frequency.
+
+    It is taken to be as broad as the lines that are compared at least.
+
+    Parameters
+    ----------
+    lines : (n_channels, n_lines)
+        Fourier transforms of the channels, from zero frequency.
+    """
+    low = max(int((frequency_hz - reach_hz) * duration_s), AROUND)
+    high = min(int((frequency_hz + reach_hz) * duration_s) + 1, lines.shape[1] - AROUND - 1)
+    near = lines[:, low - AROUND : high + AROUND + 1]
+    power = np.convolve(np.sum(np.abs(near) ** 2, axis=0), np.ones(2 * AROUND + 1), "valid")
+    middle = low + int(np.argmax(power))
+    here = lines[:, middle - AROUND : middle + AROUND + 1]
+    shape = np.linalg.eigh(here @ here.conj().T)[1][:, -1]
+    return middle / duration_s, FEWEST_LINES / (REACH * middle), np.asarray(shape)
+
+
 @lru_cache(maxsize=64)
 def through_window(half_lines: float, skirts: bool) -> FloatArray:
     r"""Return the mean power of lines through Hann's window beside a peak, over that at its middle.
@@ -139,11 +170,14 @@ def _best(power: FloatArray, slopes: FloatArray, peak: FloatArray) -> float:
     return float(np.max(-np.log(shape).sum(axis=-1) - power.size * np.log(mean)))
 
 
-def are_orders(frequency_hz: FloatArray, damping_ratio: FloatArray, missing: FloatArray) -> BoolArray:
+def are_orders(
+    frequency_hz: FloatArray, damping_ratio: FloatArray, missing: FloatArray, n_sensors: int
+) -> BoolArray:
     """Tell which peaks lie at half or twice another, and are as little modes as that one.
 
-    Neither shows skirts, and the other has none, or both together are unlikely to have any. A peak too close
-    to others to be judged by itself is judged by the other.
+    Neither shows skirts, and the other has none, or both together are unlikely to have any; of few sensors,
+    do not show them together either. A peak too close to others to be judged by itself is judged by the
+    other.
 
     Parameters
     ----------
@@ -151,9 +185,10 @@ def are_orders(frequency_hz: FloatArray, damping_ratio: FloatArray, missing: Flo
         ``missing`` as of :func:`missing_skirts`, NaN where it is unknown.
     """
     ratio = frequency_hz[:, None, None] / (frequency_hz[:, None] * MULTIPLES)
-    width = np.hypot(damping_ratio[:, None], damping_ratio)[..., None]
+    width = np.maximum(np.hypot(damping_ratio[:, None], damping_ratio), CENTRE)[..., None]
     near = (np.abs(np.log(ratio)) < width).any(axis=2)
     near &= np.minimum(frequency_hz[:, None], frequency_hz) < HIGHEST_3P_HZ
-    order = (missing > LESS_LIKELY) | (missing[:, None] + missing > BOTH_LESS_LIKELY)
+    least = SHOWN if n_sensors < FEW_SENSORS else BOTH_LESS_LIKELY
+    order = (missing > LESS_LIKELY) | (missing[:, None] + missing > least)
     shown = missing < SHOWN
     return np.asarray((near & order & ~shown & ~shown[:, None]).any(axis=1))

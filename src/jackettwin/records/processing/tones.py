@@ -61,6 +61,8 @@ MIN_TURNS = 20.0
 """Fewest turns in a record; with fewer, the rotor stands or its tones cannot be separated."""
 SPEED_KEYS = ("rotor_speed_rpm", "mean_rotor_speed_rpm", "rotor_rpm")
 """Names of the mean speed of the rotor among a record's conditions."""
+ROTOR_STATES = ("rotor standing", "rotor turning")
+"""States of a record whose rotor speed is measured."""
 SPREAD = 0.05
 """Relative range of the speed about a stated mean, within ten minutes of operation."""
 
@@ -97,12 +99,27 @@ def rotor_speed(record: Record) -> FloatArray | None:
 
 def stated_orders(conditions: Mapping[str, Any], duration_s: float) -> tuple[RotorOrder, ...]:
     """Return the ranges of the orders by a mean speed in the conditions; none for a rotor at rest."""
-    stated = [conditions[key] for key in SPEED_KEYS if isinstance(conditions.get(key), int | float)]
+    stated = _stated_rpm(conditions)
     turns_a_second = abs(stated[0]) / 60.0 if stated else 0.0
     if turns_a_second * duration_s < MIN_TURNS:
         return ()
     low, high = turns_a_second * (1.0 - SPREAD), turns_a_second * (1.0 + SPREAD)
     return tuple(RotorOrder(k, k * low, k * high, 0.0) for k in ORDERS)
+
+
+def knows_rotor_speed(conditions: Mapping[str, Any]) -> bool:
+    """Return whether conditions state the speed of the rotor, or follow from a channel of it.
+
+    Examples
+    --------
+    >>> [knows_rotor_speed(c) for c in ({"rotor_rpm": 0}, {"state": ROTOR_STATES[0]}, {"state": "idling"})]
+    [True, True, False]
+    """
+    return bool(_stated_rpm(conditions)) or conditions.get("state") in ROTOR_STATES
+
+
+def _stated_rpm(conditions: Mapping[str, Any]) -> list[float]:
+    return [conditions[key] for key in SPEED_KEYS if isinstance(conditions.get(key), int | float)]
 
 
 def without_orders(record: Record, speed_rad_s: FloatArray) -> tuple[Record, tuple[RotorOrder, ...]]:
