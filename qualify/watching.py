@@ -5,6 +5,7 @@ Usage: python qualify/watching.py [page] [quiet turbines a kind of seasons] [tur
        python qualify/watching.py speed
        python qualify/watching.py kinds [turbines a kind of seasons] [folder of pieces]
        python qualify/watching.py scours [turbines a kind of seasons] [folder of pieces]
+       python qualify/watching.py short [turbines a kind of seasons] [folder of pieces]
        python qualify/watching.py right [turbines]
        python qualify/watching.py smallest [turbines a kind of seasons] [folder of pieces] [--model]
 
@@ -74,7 +75,10 @@ TOLD = (
     (OCTAVES, (1.0 / len(OCTAVES),) * len(OCTAVES)),
 )
 """Covariances of the kinds above: telegraph's is that of two days."""
+SHORT_DAYS, SHORT_RECORDS = 200.0, 6.0
+"""A baseline of a part of a year, and records a cluster beside it."""
 QUIET_SEEDS, CHANGE_SEEDS, UNTOLD_SEEDS, SCOUR_SEEDS, SMALLEST_SEEDS = 20_000, 30_000, 40_000, 60_000, 80_000
+SHORT_SEEDS = 200_000
 """Where the seeds of turbines begin; those below were used for development."""
 NAMING = "causes.py", "diagnosis.py", "next_look.py"
 """Of ``watching``: what only says which cause it was."""
@@ -102,10 +106,12 @@ def patterns() -> tuple[Pattern, ...]:
     return replace(found, mixed=()).patterns(bending)
 
 
-def watched(h: History, watch: Watch, until: float = 1e9) -> tuple[Watch, list[Look]]:
+def watched(
+    h: History, watch: Watch, until: float = 1e9, baseline: float = BASELINE
+) -> tuple[Watch, list[Look]]:
     """Return the watch and its looks up to the first alarm after the baseline, or a day."""
     looks: list[Look] = []
-    for day in h.between(BASELINE, until).by_day():
+    for day in h.between(baseline, until).by_day():
         watch, look = watching.step(watch, day)
         looks.append(look)
         if look.change is not None:
@@ -132,6 +138,56 @@ def quiet(kind: str, seed: int, first_seed: int = QUIET_SEEDS) -> dict[str, Any]
         _, looks = watched(h, calibrated(replace(before, arl_years=arl), baseline))
         out[f"{arl:g}"] = [looks[-1].change is not None, (looks[-1].day - BASELINE) / 365.25]
     return out
+
+
+def of_part_of_a_year(kind: str, seed: int, *, scour_after: float | None = None) -> History:
+    """Return a turbine whose records begin on any day of the year, with scour some days after a baseline."""
+    place = list(KINDS).index(kind)
+    begins = np.floor(np.random.default_rng((12, place, seed)).uniform(0.0, 365.0))
+    some = replace(KINDS[kind], records_a_cluster=SHORT_RECORDS)
+    s = seasons(SHORT_SEEDS + 100 * place + seed, begins + SHORT_DAYS + (YEARS - 1) * 365.25, some)
+    if scour_after is not None:
+        s = PLANTED[0].apply(s, begins + SHORT_DAYS + scour_after, np.random.default_rng(seed))
+    h = history(s).between(begins, 1e9)
+    return replace(h, days=h.days - begins)
+
+
+def quiet_after_part_of_a_year(kind: str, seed: int) -> dict[str, Any]:
+    """Return whether and after how many years a watch with a short baseline gives an alarm, by its ARL."""
+    h = of_part_of_a_year(kind, seed)
+    baseline, out = h.between(0.0, SHORT_DAYS), {}
+    before = learnt(baseline, ARLS[0], patterns())
+    for arl in ARLS:
+        begun = calibrated(replace(before, arl_years=arl), baseline)
+        _, looks = watched(h, begun, baseline=SHORT_DAYS)
+        out[f"{arl:g}"] = [looks[-1].change is not None, (looks[-1].day - SHORT_DAYS) / 365.25]
+    return out
+
+
+def scour_after_part_of_a_year(kind: str, seed: int) -> float | None:
+    """Return after how many days scour is found after a short baseline; negative if before it came."""
+    after = np.random.default_rng((13, list(KINDS).index(kind), seed)).uniform(20.0, 200.0)
+    h = of_part_of_a_year(kind, seed, scour_after=after)
+    begun = watching.start(h.between(0.0, SHORT_DAYS), patterns=patterns())
+    _, looks = watched(h, begun, SHORT_DAYS + after + 365.0, SHORT_DAYS)
+    return None if looks[-1].change is None else looks[-1].day - SHORT_DAYS - after
+
+
+def short(pieces: dict[str, Any]) -> list[str]:
+    """Return the section on baselines of a part of a year."""
+    lines = [
+        "## Baselines of 200 days",
+        "",
+        "They begin on any day of the year; about 1,200 records a year; otherwise as above.",
+        "",
+        "| seasons | ARL [years] | alarms | years watched | promised | ratio | chance |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    slow = [one for kind in SLOW for one in _of(pieces, f"short/quiet/{kind}/")]
+    lines += _counted("**slow and benign**", slow)
+    lines += _counted("**all**", _of(pieces, "short/quiet/"))
+    table = scours({name.removeprefix("short/"): value for name, value in pieces.items()})
+    return [*lines, "", *table[2:]]
 
 
 def untold(h: History) -> History:
@@ -747,6 +803,7 @@ def given() -> argparse.Namespace:
         "page": (15, 20, 7),
         "speed": (),
         "kinds": (3,),
+        "short": (3,),
         "scours": (4,),
         "right": (24,),
         "smallest": (3,),
@@ -785,6 +842,18 @@ def main() -> None:
             if kind not in SLOW
         ]
         sys.stdout.write("\n".join(smallest_found(computed(named, asked.folder), name)))
+        return
+    if asked.what == "short":
+        named = [
+            piece
+            for seed in range(number)
+            for kind in KINDS
+            for piece in (
+                (f"short/quiet/{kind}/{seed}", lambda k=kind, s=seed: quiet_after_part_of_a_year(k, s)),
+                (f"short/scour/{kind}/{seed}", lambda k=kind, s=seed: scour_after_part_of_a_year(k, s)),
+            )
+        ]
+        sys.stdout.write("\n".join(short(computed(named, asked.folder))))
         return
     if asked.what in ("kinds", "scours"):
         every = asked.what == "kinds"

@@ -50,17 +50,41 @@ def test_a_models_slope_is_that_of_its_condition_in_standard_units() -> None:
 def test_a_baseline_of_a_year_knows_slow_processes_and_a_short_one_does_not() -> None:
     whole, half, part = np.arange(0.0, 365.0), np.arange(0.0, 200.0), np.arange(0.0, 90.0)
 
-    def slow(days: np.ndarray) -> list[tuple[str, str, float]]:
-        h = rows(days, air_temperature_c=10.0 + np.cos(days / 58.0), hs_m=1.0 + np.sin(days) ** 8)
+    def slow(days: np.ndarray, **more: np.ndarray) -> list[tuple[str, str, float]]:
+        h = rows(days, hs_m=1.0 + np.sin(days) ** 8, **more)
         usual = design_of(h)
         added = with_slow_processes(usual, h).columns[len(usual.columns) :]
         return [(c.name, c.shape, c.lag_days) for c in added]
 
-    assert slow(part) == []
-    assert slow(half) == [("hs_m", "storm", HEALING_DAYS), ("time", "trend", 0.0)]  # growth goes on
-    assert slow(whole) == [
-        ("hs_m", "storm", HEALING_DAYS), ("air_temperature_c", "line", GROUND_DAYS), ("time", "trend", 0.0),
-    ]  # fmt: skip
+    air = [10.0 + np.cos(days / 58.0) for days in (part, half, whole)]
+    storm, ground = ("hs_m", "storm", HEALING_DAYS), ("air_temperature_c", "line", GROUND_DAYS)
+    growth = ("time", "trend", 0.0)
+    started = [(name, "settling", 0.0) for name in ("hs_m", "air_temperature_c")]
+    assert slow(part, air_temperature_c=air[0]) == []
+    assert slow(half, air_temperature_c=air[1]) == [storm, ground, *started, growth]
+    assert slow(whole, air_temperature_c=air[2]) == [storm, ground, growth]
+    year = [("time of year", shape, 0.0) for shape in ("sine", "cosine")]
+    assert slow(half) == [storm, started[0], *year, growth]
+    assert slow(whole) == [storm, growth]  # the time of year is there already
+
+
+def test_ground_of_unknown_start_is_explained_exactly(rng: np.random.Generator) -> None:
+    """What follows the air since long before a baseline is the column from no start, and what settles.
+
+    The recursion is linear in its state: x(t) = x₀(t) + x(0) exp(−t/τ) for any times of records.
+    """
+    days = np.sort(rng.uniform(0.0, 600.0, 900))
+    h = rows(days, air_temperature_c=10.0 - 7.0 * np.cos(2.0 * np.pi * days / 365.0))
+    part, ever = h.between(400.0, 600.0), h.between(0.0, 600.0)
+    design = with_slow_processes(design_of(part), part)
+    columns = design.columns
+    ground = [c.lag_days for c in columns].index(GROUND_DAYS)
+    settling = next(k for k, c in enumerate(columns) if c.shape == "settling")
+    assert columns[settling].scale == GROUND_DAYS
+    long_before = regressors(design, ever, fresh(design))[0][days >= 400.0, 1 + ground]
+    x = regressors(design, part, fresh(design, part))[0][:, [1 + ground, 1 + settling]]
+    np.testing.assert_allclose(x @ [1.0, long_before[0]], long_before, atol=1e-12)
+    assert np.abs(long_before[0]) > 0.5  # the start matters
 
 
 def test_storms_soften_and_what_they_softened_settles() -> None:

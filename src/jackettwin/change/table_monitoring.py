@@ -240,8 +240,8 @@ def _limits(watch: Watch, baseline: History, rest: History) -> list[str]:
     span = float(np.ptp(baseline.days))
     if span < WHOLE_YEAR_DAYS:
         said.append(
-            f"the baseline covers {span:.0f} days: what a season does and this time of the year did not show "
-            "counts as a change"
+            f"the baseline covers {span:.0f} days: what another season does may count as a change, as far as "
+            "air temperature, storms and growth do not explain it"
         )
     return said
 

@@ -70,9 +70,9 @@ class Column:
     lag_days : time constant of the lag; 0 for none
     shape : "line", "square" (of the standardised condition, minus one), "frost" (the part below zero),
         "storm" (the square of what exceeds usual seas), "sine" and "cosine" (of the time of day or of the
-        year), or "trend" (the time)
+        year), "trend" (the time), or "settling" (what is left of an unknown start, exp(−t/scale))
     centre, scale : mean and standard deviation over the baseline; ``scale`` is the period [days] of a sine or
-        cosine, a year of a trend
+        cosine, a year of a trend, and the time constant of a settling, which starts at ``centre``
     prior : prior standard deviation of the coefficient, in standard deviations of the quantity
     """
 
@@ -183,8 +183,9 @@ def with_slow_processes(design: Design, baseline: History) -> Design:
     """Return the design with regressors of harmless processes that take weeks or years.
 
     These are ground that storms soften and that recovers, ground that follows the air, and marine growth.
-    Each is added if the baseline is long enough to separate it from the intercept. They are not for following
-    a stiffness through time, of whose changes they would explain a part.
+    They are added if the baseline is long enough to separate them from the intercept. After a part of a year
+    what the ground was like before it is unknown, and without a temperature so is what the other seasons do.
+    They are not for following a stiffness through time, of whose changes they would explain a part.
     """
     span, lines = float(np.ptp(baseline.days)), [c for c in design.columns if c.shape == "line"]
     if span <= _SEVERAL * HEALING_DAYS:
@@ -192,10 +193,13 @@ def with_slow_processes(design: Design, baseline: History) -> Design:
     there = [c for c in lines if c.lag_days == 0.0]
     rough = [c for pattern in (_WAVES, _WIND) for c in there if pattern.search(c.name)][:1]
     slow = [replace(c, shape="storm", lag_days=HEALING_DAYS, prior=_CURVED) for c in rough]
-    if span > WHOLE_YEAR_DAYS:
-        slow += [replace(c, lag_days=GROUND_DAYS, prior=_SLOW) for c in lines if c.lag_days == max(LAGS_DAYS)]
-    middle = float(baseline.days[0]) + 0.5 * span
-    slow.append(Column("time", -1, 0.0, "trend", middle, YEAR_DAYS, _SLOW))
+    slow += [replace(c, lag_days=GROUND_DAYS, prior=_SLOW) for c in lines if c.lag_days == max(LAGS_DAYS)]
+    first = float(baseline.days[0])
+    if span <= WHOLE_YEAR_DAYS:
+        slow += [Column(c.name, -1, 0.0, "settling", first, c.lag_days, c.prior) for c in slow]
+        if all(c.lag_days == 0.0 for c in lines):
+            slow += _time_of_year(_CURVED)
+    slow.append(Column("time", -1, 0.0, "trend", first + 0.5 * span, YEAR_DAYS, _SLOW))
     return replace(design, columns=(*design.columns, *slow))
 
 
@@ -203,8 +207,11 @@ def with_time_of_year(design: Design) -> Design:
     """Return the design with the time of year as regressor, which replaces a missing temperature."""
     if any(c.lag_days > 0.0 or c.name == "time of year" for c in design.columns):
         return design
-    year = [Column("time of year", -1, 0.0, shape, 0.0, YEAR_DAYS, _LINEAR) for shape in ("sine", "cosine")]
-    return replace(design, columns=(*design.columns, *year))
+    return replace(design, columns=(*design.columns, *_time_of_year(_LINEAR)))
+
+
+def _time_of_year(prior: float) -> list[Column]:
+    return [Column("time of year", -1, 0.0, shape, 0.0, YEAR_DAYS, prior) for shape in ("sine", "cosine")]
 
 
 def _whole_days(baseline: History) -> bool:
@@ -215,15 +222,16 @@ def _whole_days(baseline: History) -> bool:
 def fresh(design: Design, baseline: History | None = None) -> Lagged:
     """Return the state of lagged regressors before the first row.
 
-    With a baseline, regressors with lags of weeks start from their values at its end, which is a whole year
-    later; the others start from the first row.
+    With a baseline, regressors with lags of weeks start from their values at its end if that is a whole year
+    later, and if not from the mean condition and no storm; the others start from the first row.
     """
     slow = np.array([column.lag_days >= HEALING_DAYS for column in design.columns], dtype=np.bool_)
     none = Lagged(-np.inf, np.zeros(len(design.columns)))
     if baseline is None or not slow.any():
         return none
     first = regressors(design, baseline.rows(np.arange(baseline.days.size) == 0), none)[1].values
-    last = regressors(design, baseline, none)[1].values
+    whole = np.ptp(baseline.days) > WHOLE_YEAR_DAYS
+    last = regressors(design, baseline, none)[1].values if whole else np.zeros_like(first)
     return Lagged(float(baseline.days[0]), np.where(slow, last, first))
 
 
@@ -255,6 +263,8 @@ def _standard(column: Column, history: History) -> FloatArray:
     """Return a standardised condition after its nonlinearity, without lag."""
     if column.shape == "trend":
         return np.asarray((history.days - column.centre) / column.scale)
+    if column.shape == "settling":
+        return np.asarray(np.exp((column.centre - history.days) / column.scale))
     if column.shape in ("sine", "cosine"):
         turn = 2.0 * np.pi * history.days / column.scale
         return np.asarray(np.sin(turn) if column.shape == "sine" else np.cos(turn))
