@@ -20,9 +20,10 @@ import hashlib
 import json
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -31,14 +32,14 @@ from common.charts import daily, ewma, hotelling, pca_novelty, regressed
 from common.page import write_page
 from common.seasons import FREQUENCY_HZ, Kind, Seasons, ramp, seasons, step
 from diagnosis_by_hand import LOSS, Site, paired, pile_head, solved
-from scipy.stats import beta, chi2, poisson
+from scipy.stats import beta, binomtest, chi2, poisson
 
 from jackettwin import watching
 from jackettwin.change.causes import model_causes
 from jackettwin.change.smallest_changes import HORIZONS_DAYS, smallest_changes
 from jackettwin.decks import read_structure
 from jackettwin.response.modes.labels import LOCAL
-from jackettwin.watching import History, Look, Pattern, Watch, diagnose, general_causes
+from jackettwin.watching import CHANCE, History, Look, Pattern, Watch, diagnose, general_causes, sight
 from jackettwin.watching.block import Block, begin, no_begins, watched as columns_watched
 from jackettwin.watching.design import Design, design_of, fresh, regressors, with_slow_processes
 from jackettwin.watching.directions import SHARES, Directions, directions_of
@@ -68,6 +69,10 @@ KINDS = {
 BASELINES = 75.0, 365.0
 """After which the smallest changes are told [days]: what lies beyond the shorter one is projected. A third as
 many turbines have the longer one."""
+SMALLEST_PLANTS = {30.0: 4, 90.0: 3, 365.0: 1}
+"""Changes of each size that are planted on a turbine, by horizon [days]."""
+SMALLEST_SHARES = 1.0, 0.5
+"""Of the smallest size that is told, what is planted."""
 SLOW = tuple(KINDS)[-4:]
 """What moves modes over weeks and years and harms nobody."""
 TOLD = (
@@ -442,36 +447,52 @@ def changes(pieces: dict[str, Any]) -> list[str]:
 # the smallest changes that an owner is told
 
 
-def smallest(kind: str, baseline: float, seed: int) -> list[Any] | None:
-    """Return horizon, size, whether projected, and whether found, of every smallest change with a size.
+def smallest(kind: str, baseline: float, seed: int) -> list[Any]:
+    """Return what became of changes of the smallest sizes that are told, and of half of them.
 
-    None if there is an alarm before any change. Each change is planted by itself, 5 to 25 days after a
-    baseline of some days.
+    Of each: horizon, size, whether projected, whether found, name, share of the size, and the probability
+    that is told of it. Changes of one horizon begin 40 days apart, each on a watch that has seen none; those
+    after a false alarm are left out.
     """
     place = list(KINDS).index(kind)
-    begun = baseline + np.random.default_rng((10, place, seed)).uniform(5.0, 25.0)
-    s = seasons(SMALLEST_SEEDS + 100 * place + seed, begun + HORIZONS_DAYS[-1] + 1.0, KINDS[kind])
+    rng = np.random.default_rng((10, place, seed))
+    onsets = np.floor(baseline + rng.uniform(5.0, 25.0)) + 40.0 * np.arange(max(SMALLEST_PLANTS.values()))
+    some = replace(KINDS[kind], records_a_cluster=SHORT_RECORDS)
+    s = seasons(SMALLEST_SEEDS + 100 * place + seed, onsets[-1] + HORIZONS_DAYS[-1] + 1.0, some)
     learning = history(s).between(0.0, baseline)
     watch = watching.start(learning)
-    told = smallest_changes(watch, learning, None)
-    for day in history(s).between(baseline, np.floor(begun)).by_day():
-        watch, look = watching.step(watch, day)
-        if look.change is not None:
-            return None
-    out = []
-    for one in told:
-        found = False
-        if one.size is None:
-            continue
-        h = history(s.changed(step(s.days, begun, np.full(4, -one.size))))
-        now = watch
-        for day in h.between(np.floor(begun), begun + one.days).by_day():
-            now, look = watching.step(now, day)
-            found = look.change is not None
-            if found:
+    told = {one.days: one for one in smallest_changes(watch, learning, None) if one.size is not None}
+    seen = {days: sight(watch, learning, days) for days in told}
+    before, day = [], baseline
+    for onset in onsets:
+        for records in history(s).between(day, onset).by_day():
+            watch, look = watching.step(watch, records)
+            if look.change is not None:
                 break
-        out.append([one.days, one.size, one.projected, found])
+        else:
+            before.append(watch)
+            day = onset
+            continue
+        break
+    out = []
+    for days, one in told.items():
+        for share in SMALLEST_SHARES:
+            planted = np.full(4, -share * one.size)
+            claimed = seen[days].chance(_alike(watch.quantities, planted[0]))
+            for watch, onset in list(zip(before, onsets, strict=False))[: SMALLEST_PLANTS[days]]:
+                h, now, found = history(s.changed(step(s.days, onset, planted))), watch, False
+                for records in h.between(onset, onset + days).by_day():
+                    now, look = watching.step(now, records)
+                    found = look.change is not None
+                    if found:
+                        break
+                out.append([days, one.size, one.projected, found, "all modes alike", share, claimed])
     return out
+
+
+def _alike(quantities: Sequence[tuple[str, int]], size: float) -> np.ndarray:
+    """Return the change of all frequencies by as much, and of nothing else, (1, m_all)."""
+    return np.array([[size if kind == "frequency" else 0.0 for kind, _ in quantities]])
 
 
 def smallest_of_model(kind: str, baseline: float, seed: int) -> list[Any] | None:
@@ -502,15 +523,13 @@ def smallest_of_model(kind: str, baseline: float, seed: int) -> list[Any] | None
     f, zeta = np.nanmedian(learning.frequency, axis=0), np.nanmedian(learning.damping, axis=0)
     causes = model_causes(structure, PAIRS_OF_MODEL, f, zeta, seed=seed)
     watch = watching.start(learning, patterns=causes.patterns(PAIRS_OF_MODEL))
-    told = smallest_changes(watch, learning, causes)
+    told = [one for one in smallest_changes(watch, learning, causes) if one.size is not None]
     for day in of_site(s).between(baseline, np.floor(begun)).by_day():
         watch, look = watching.step(watch, day)
         if look.change is not None:
             return None
     out = []
     for one in told:
-        if one.size is None:
-            continue
         softer = 1.0 - one.size if one.change == "soil softening" else pile_head(one.size) / pile_head(0.0)
         after = solved(replace(site, feet=feet * softer))
         at = paired(before, after, chosen)
@@ -523,41 +542,60 @@ def smallest_of_model(kind: str, baseline: float, seed: int) -> list[Any] | None
             now, look = watching.step(now, day)
             if look.change is not None:
                 break
-        out.append([one.days, one.size, one.projected, look.change is not None, one.change])
+        found = look.change is not None
+        out.append([one.days, one.size, one.projected, found, one.change, 1.0, CHANCE])
     return out
 
 
 def smallest_found(pieces: dict[str, Any], name: str) -> list[str]:
-    """Return the table of the smallest changes that were told and planted."""
-    lines = [
-        "| change | baseline [days] | within [days] | projected | size, median | found | 95 % interval [%] |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    """Return the table of the smallest changes that were told and planted.
+
+    The last column is the chance of a share as far from the told one, on either side.
+    """
+    columns = "change", "baseline [days]", "within [days]", "projected", "size, median", *_FOUND
+    lines = [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
     every = []
     for baseline in BASELINES:
         turbines = [one for one in _of(pieces, f"{name}/{baseline:g}/") if one is not None]
-        rows = [row if len(row) > 4 else [*row, "all modes alike"] for one in turbines for row in one]
+        rows = [(*row, (baseline, k)) for k, one in enumerate(turbines) for row in one]
         every += rows
         for change in dict.fromkeys(row[4] for row in rows):
-            for days in HORIZONS_DAYS:
-                told = [row for row in rows if row[0] == days and row[4] == change]
+            for days, share in product(HORIZONS_DAYS, SMALLEST_SHARES):
+                told = [row for row in rows if row[0] == days and row[4] == change and row[5] == share]
                 if told:
-                    size = np.median([row[1] for row in told])
+                    size = share * np.median([row[1] for row in told])
                     shown = f"{size:.2f} m" if change.startswith("scour") else f"{100.0 * size:.2f} %"
                     lines.append(
                         f"| {change} | {baseline:g} | {days:g} | {'yes' if told[0][2] else 'no'} | {shown} | "
                         f"{_found_of(told)} |"
                     )
-    early = sum(one is None for one in _of(pieces, f"{name}/"))
-    return [*lines, f"| **all** | | | | | {_found_of(every)} |", "",
-            f"Alarms before the change, not counted: {early}.", ""]  # fmt: skip
+    for share in SMALLEST_SHARES:
+        told = [row for row in every if row[5] == share]
+        if told:
+            lines.append(f"| **all**, {share:g} of the size | | | | | {_found_of(told)} |")
+    return [*lines, ""]
+
+
+_FOUND = "told [%]", "found", "95 % interval [%]", "chance"
 
 
 def _found_of(told: list[Any]) -> str:
+    """Return what is told and found, its interval, and the chance of it if what is told is true.
+
+    Changes of one turbine have its baseline in common, so that they count as fewer (Korn & Graubard 1998): as
+    many as give the variance of the share between turbines.
+    """
     n, found = len(told), sum(row[3] for row in told)
-    low = beta.ppf(0.025, found, n - found + 1) if found else 0.0
-    high = beta.ppf(0.975, found + 1, n - found) if found < n else 1.0
-    return f"{found} of {n} | {100 * low:.0f} to {100 * high:.0f}"
+    claimed, share = float(np.mean([row[6] for row in told])), found / n
+    turbines = list(dict.fromkeys(row[7] for row in told))
+    apart = [sum(row[3] - share for row in told if row[7] == one) for one in turbines]
+    variance = sum(x * x for x in apart) / n**2
+    worth = min(share * (1.0 - share) / variance, n) if variance > 0.0 else len(turbines)
+    hits = share * worth
+    low = beta.ppf(0.025, hits, worth - hits + 1.0) if found else 0.0
+    high = beta.ppf(0.975, hits + 1.0, worth - hits) if found < n else 1.0
+    chance = binomtest(round(hits), round(worth), claimed).pvalue
+    return f"{100 * claimed:.0f} | {found} of {n} | {100 * low:.0f} to {100 * high:.0f} | {chance:.3f}"
 
 
 # what the seasons' information allows
