@@ -1,4 +1,4 @@
-"""Ten-minute records of jacket15 by OpenFAST 5 with known moments: SubDyn's jacket in HydroDyn's sea.
+"""Ten-minute records of a jacket by OpenFAST 5 with known moments: SubDyn's jacket in HydroDyn's sea.
 
 Steel and feet are told to OpenFAST as SubDyn deck and static springs; the tower is ElastoDyn's, with two
 shapes in each direction; the rotor is AeroDyn's in a turbulent box, standing feathered or turning at a fixed
@@ -17,7 +17,6 @@ from rotor_forces import EACH_SIDE, GRID_M, aero_files, write_box
 from common.hydrodyn_deck import Water, write_water
 from common.openfast_deck import TOWER_NODES, Run, Turbine, write_case
 from jackettwin.arrays import FloatArray
-from jackettwin.decks import read_structure
 from jackettwin.decks.subdyn_writer import write_subdyn
 from jackettwin.loads import operating_point, read_rotor
 from jackettwin.loads.aerodynamics.turbulence import turbulence
@@ -32,8 +31,6 @@ DISCARD_S, DURATION_S, STEP_S = 30.0, 600.0, 0.05
 FEATHERED_DEG, IDLING_RPM = 90.0, 0.3
 GAUGES = (26, 7)
 """Nodes of the tower near 77 and 41 m."""
-BAYS = (1, 2, 3, 4)
-LEGS = (1, 2, 3, 4)
 ACCELERATIONS = (
     *("YawBrTAxp", "YawBrTAyp", "TwHt1ALxt", "TwHt1ALyt", "TwHt2ALxt", "TwHt2ALyt", "PtfmTAxi", "PtfmTAyi"),
 )
@@ -56,14 +53,24 @@ class Weather:
 
 @dataclass(frozen=True)
 class Asset:
-    """What the records' truth has and a twin is not told: feet [N/m], drag, added mass, growth, steel."""
+    """A jacket, what its truth has and a twin is not told: feet [N/m], drag, added mass, growth, steel."""
 
+    structure: Structure
     feet_n_m: float
     drag: float
     added_mass: float
     growth_m: float
     tower_damping_percent: float
     depth_m: float
+
+    @property
+    def legs(self) -> tuple[tuple[str, ...], ...]:
+        """Return the names of the legs' members, bay by bay from the lowest."""
+        bays: dict[str, list[str]] = {}
+        for bar in self.structure.members:
+            if bar.name.startswith("leg_"):
+                bays.setdefault(bar.name.rpartition("_bay_")[2], []).append(bar.name)
+        return tuple(tuple(bays[bay]) for bay in sorted(bays, key=int))
 
 
 def made(program: str, decks: Path, folder: Path, asset: Asset, weather: Weather) -> Path:
@@ -75,16 +82,16 @@ def made(program: str, decks: Path, folder: Path, asset: Asset, weather: Weather
         rotor, control = read_rotor("iea15")
         at = operating_point(rotor, control, weather.wind)
         pitch_deg, speed_rpm = float(np.degrees(at.pitch)), at.rotor_speed * 30.0 / np.pi
-        still = on_feet("at work", feet, pitch_deg)
+        still = on_feet("at work", feet, pitch_deg, asset.structure)
         thrust = modes_with_rotor(
             asset_model(StandingAsset(still.structure, still.support)), rotor, at, shaft="locked"
         )[0].load
-    standing = on_feet("a record's asset", feet, pitch_deg)
-    machine, structure = standing.turbine, read_structure("jacket15")
-    _deck(folder, structure, asset)
+    standing = on_feet("a record's asset", feet, pitch_deg, asset.structure)
+    machine = standing.turbine
+    _deck(folder, asset)
     if weather.height_m > 0.0:
-        _water(folder, structure, asset, weather)
-    _air(decks, folder, structure, machine, weather)
+        _water(folder, asset, weather)
+    _air(decks, folder, asset.structure, machine, weather)
     run = Run(
         flexible=True,
         rest=at_rest(standing.structure, reduced_to_interface(standing), thrust=thrust),
@@ -105,14 +112,14 @@ def made(program: str, decks: Path, folder: Path, asset: Asset, weather: Weather
     return folder / "case.out"
 
 
-def _deck(folder: Path, structure: Structure, asset: Asset) -> None:
+def _deck(folder: Path, asset: Asset) -> None:
     """Write SubDyn's deck, which tells the forces at the lower end of every leg in every bay."""
-    foundation, _ = at_interface(structure.with_masses(()))
+    foundation, _ = at_interface(asset.structure.with_masses(()))
     support = read_support(f"kelvin-voigt:k={asset.feet_n_m},c=0", foundation)
     halved = replace(with_static_reactions(foundation, support), subdivide=2)
     write_subdyn(halved, folder / "deck.dat")
     names = [bar.name for bar in halved.bars]
-    legs = [names.index(f"leg_{leg}_bay_{bay}") + 1 for bay in BAYS for leg in LEGS]
+    legs = [names.index(leg) + 1 for bay in asset.legs for leg in bay]
     text = (folder / "deck.dat").read_text()
     at = text.index("           0   NMOutputs")
     head = f"{len(legs):>12}   NMOutputs\nMemberID NOutCnt NodeCnt\n(-) (-) (-)\n"
@@ -123,8 +130,8 @@ def _deck(folder: Path, structure: Structure, asset: Asset) -> None:
     (folder / "deck.dat").write_text(text)
 
 
-def _water(folder: Path, structure: Structure, asset: Asset, weather: Weather) -> None:
-    steel = structure.with_masses(())
+def _water(folder: Path, asset: Asset, weather: Weather) -> None:
+    steel = asset.structure.with_masses(())
     write_water(
         folder,
         steel,
@@ -182,7 +189,7 @@ def tower_height_m(structure: Structure, gauge: int) -> float:
     return base + (gauge - 0.5) / TOWER_NODES * (top - base)
 
 
-def kept(path: Path) -> dict[str, FloatArray]:
+def kept(path: Path, asset: Asset) -> dict[str, FloatArray]:
     """Return what is kept of a result after its beginning, {name: (n_samples,)}, in N, m and s."""
     found = read_text(path)
     after = found.times_s >= DISCARD_S
@@ -190,7 +197,7 @@ def kept(path: Path) -> dict[str, FloatArray]:
         *ACCELERATIONS,
         *TOWER_BASE,
         *BED,
-        *(name for leg in range(len(LEGS) * len(BAYS)) for name in leg_channels(leg)),
+        *(name for leg in range(sum(map(len, asset.legs))) for name in leg_channels(leg)),
     )
     return {name: found.data[found.names.index(name)][after] for name in wanted}
 
