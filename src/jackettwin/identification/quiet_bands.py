@@ -18,7 +18,7 @@ from jackettwin.identification.estimate import Stabilisation
 from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.pole_methods import poles_of
 from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK, GUARD, SAMPLES_PER_CYCLE
-from jackettwin.identification.preparation.spectra import welch
+from jackettwin.identification.preparation.spectra import densities
 from jackettwin.identification.selection.candidates import Tones, candidates, find_tones
 from jackettwin.identification.selection.clustering import clusters
 from jackettwin.identification.selection.peaks import clear_peaks_hz
@@ -99,7 +99,7 @@ def with_quiet_bands(
     first: PoleSearch, ready: PreparedRecord, settings: IdentificationSettings
 ) -> PoleSearch:
     """Return the search extended by further bands."""
-    spectrum = welch(first.tones.clean, ready.settings.sample_rate_hz)
+    spectrum = densities(first.tones.clean, ready.settings.sample_rate_hz)
     out, above = first, 0.0
     for _ in range(MOST_BANDS):
         peaks = [f for f in clear_peaks_hz(spectrum.frequencies_hz, spectrum.density) if f > above]

@@ -2,7 +2,11 @@ from .clocks.another_time import channel_axes as channel_axes, comparable_channe
 from .conditions import with_conditions as with_conditions
 from .processing.merge import merge as merge, shared_channels as shared_channels
 from .processing.prepare import bandpass as bandpass, decimate as decimate, detrend as detrend
-from .processing.spectra import spectral_matrix as spectral_matrix, welch_densities as welch_densities
+from .processing.spectra import (
+    spectral_matrix as spectral_matrix,
+    spectral_values as spectral_values,
+    welch_densities as welch_densities,
+)
 from .processing.tones import knows_rotor_speed as knows_rotor_speed, less_phase as less_phase
 from .processing.yaw import (
     knows_yaw as knows_yaw,

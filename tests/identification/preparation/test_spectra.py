@@ -8,7 +8,7 @@ import pytest
 from jackettwin.identification import IdentificationSettings, identify
 from jackettwin.identification.preparation.spectra import densities, lowest_motion_hz, welch
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.records import Record
+from jackettwin.records import Record, spectral_matrix
 
 
 def test_densities_alone_are_those_of_the_matrices() -> None:
@@ -22,6 +22,21 @@ def test_densities_alone_are_those_of_the_matrices() -> None:
     # fifteen segments of noise: the integral is right to a few per cent
     power = alone.density.sum(axis=1) * alone.frequencies_hz[1]
     np.testing.assert_allclose(power, np.nanvar(y, axis=1), rtol=0.1)
+
+
+def test_singular_values_of_more_channels_than_segments_are_those_of_the_matrix() -> None:
+    """Twenty channels that seven motions move, in fifteen segments, by the 20 × 20 matrices themselves."""
+    rng = np.random.default_rng(2)
+    y = rng.standard_normal((20, 7)) @ rng.standard_normal((7, 4000))
+    y[3, 100:300] = np.nan
+    found, length = welch(y, 10.0), 500
+    f, matrix = spectral_matrix(y, 10.0, length)
+    scale = np.sqrt(np.nanmean(y**2, axis=1))
+    direct = np.linalg.svd(matrix / np.outer(scale, scale), compute_uv=False).T
+    np.testing.assert_allclose(found.frequencies_hz, f)
+    np.testing.assert_allclose(found.density, np.einsum("faa->af", matrix).real, rtol=1e-10)
+    np.testing.assert_allclose(found.singular_values, direct, atol=1e-12 * direct.max())
+    assert welch(y, 10.0, below_hz=1.0).singular_values.shape == (20, np.sum(f <= 1.0))
 
 
 def jacket(seed: int, pair_hz: tuple[float, float], duration_s: float, waves: float = 0.0) -> Record:

@@ -6,7 +6,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification.estimate import Spectrum
-from jackettwin.records import spectral_matrix, welch_densities
+from jackettwin.records import spectral_values, welch_densities
 from jackettwin.signals import local_peaks
 
 SEGMENTS = 8
@@ -45,13 +45,9 @@ def welch(
     below_hz : float
         Frequency above which nothing is needed.
     """
-    f, matrix = spectral_matrix(y, sample_rate_hz, segment_length or _length(y, sample_rate_hz))
-    f, matrix = f[f <= below_hz], matrix[f <= below_hz]
-    density = np.asarray(np.einsum("faa->af", matrix).real)
     scale = np.sqrt([np.nanmean(row**2) for row in y])
-    # for a positive Hermitian matrix these are the singular values, at a third of their cost
-    singular = np.linalg.eigvalsh(matrix / np.multiply.outer(scale, scale))[:, ::-1].T
-    return Spectrum(f, density, np.abs(singular))
+    length = segment_length or _length(y, sample_rate_hz)
+    return Spectrum(*spectral_values(y, sample_rate_hz, length, scale, below_hz))
 
 
 def densities(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:

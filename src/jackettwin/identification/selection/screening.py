@@ -29,7 +29,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.mode_shapes import mac
-from jackettwin.identification.preparation.spectra import welch
+from jackettwin.identification.preparation.spectra import densities
 from jackettwin.identification.selection.neighbours import (
     apart,
     combinations_of_neighbours,
@@ -212,7 +212,7 @@ def evidence(
     sensors : bool
         Whether the channels are sensors, not components of many sensors.
     """
-    spectrum = welch(y, ready.settings.sample_rate_hz)
+    spectrum = densities(y, ready.settings.sample_rate_hz)
     peaks = [clear_peaks_hz(spectrum.frequencies_hz, row[None]) for row in spectrum.density]
     moving = np.array([len(own) > 0 for own in peaks])
     comparable = comparable_channels(channel_axes(ready.channels)) & np.outer(moving, moving)

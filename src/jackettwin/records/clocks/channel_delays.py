@@ -22,6 +22,8 @@ REACH_RAD = 0.25
 phases of a damped structure in wind scatter by up to this."""
 PLACE_WEIGHT = 1.0
 """Weight of the assumption that channels at one place share a logger; any informative pair weighs more."""
+LEAST_EIGENVALUE = 1e-12
+"""Eigenvalue of a network's Laplacian, over the largest, below which two parts of it are not connected."""
 ROUNDS = 12
 """Iterations of the reweighted least squares that give the median of the pairs."""
 SOFT_MISFIT = 0.02
@@ -78,16 +80,29 @@ def per_channel(network: Network, delay_s: FloatArray, weight: FloatArray) -> Fl
     pairs = np.vstack([network.pairs, network.ties])
     target = np.append(delay_s, np.zeros(len(network.ties)))
     weight = np.append(weight, np.full(len(network.ties), PLACE_WEIGHT))
-    rows = np.zeros((len(pairs), network.n))
-    rows[np.arange(len(pairs)), pairs[:, 0]] = 1.0
-    rows[np.arange(len(pairs)), pairs[:, 1]] = -1.0
+    i, j = pairs.T
     scale, out = np.asarray(np.ones(len(pairs))), np.asarray(np.zeros(network.n))
     for _ in range(ROUNDS):
-        root = np.sqrt(weight * scale)
-        out = np.asarray(np.linalg.lstsq(root[:, None] * rows, root * target, rcond=1e-9)[0])
-        scale = 1.0 / np.maximum(np.abs(rows @ out - target), SOFT_MISFIT * network.reach_s)
+        out = _balanced(i, j, weight * scale, target, network.n)
+        scale = 1.0 / np.maximum(np.abs(out[i] - out[j] - target), SOFT_MISFIT * network.reach_s)
         scale = np.asarray(scale / scale.max())
     return out
+
+
+def _balanced(i: IntArray, j: IntArray, weight: FloatArray, target: FloatArray, n: int) -> FloatArray:
+    """Return the n values of least size whose weighted squared differences x_i − x_j from targets are least.
+
+    By the normal equations, which are the Laplacian of the network: sixty channels have 1770 pairs.
+
+    >>> i, j = np.array([[0, 1], [0, 2], [1, 2]]).T
+    >>> _balanced(i, j, np.ones(3), np.array([1.0, 3.0, 2.0]), 4).round(12).tolist()
+    [1.333333333333, 0.333333333333, -1.666666666667, 0.0]
+    """
+    between = np.bincount(i * n + j, weight, n * n).reshape(n, n)
+    between = between + between.T
+    flow = np.bincount(i, weight * target, n) - np.bincount(j, weight * target, n)
+    laplacian = np.diag(between.sum(axis=1)) - between
+    return np.asarray(np.linalg.lstsq(laplacian, flow, rcond=LEAST_EIGENVALUE)[0])
 
 
 def by_channel(network: Network, of_pairs: FloatArray, weight: FloatArray) -> FloatArray:

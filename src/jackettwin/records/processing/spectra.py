@@ -82,6 +82,46 @@ def spectral_matrix(
     return _lines_hz(sample_rate_hz, segment_length), matrix
 
 
+def spectral_values(
+    y: FloatArray, sample_rate_hz: float, segment_length: int, scale: FloatArray, below_hz: float = np.inf
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return frequencies, densities, and singular values of the spectral matrices of y over a scale.
+
+    The matrix of more channels than segments has the rank of the segments, and the values of the matrix of
+    their products, which is smaller.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero-mean samples; NaN marks a missing one.
+    scale : (n_channels,)
+    below_hz : float
+        Frequency above which nothing is needed.
+
+    Returns
+    -------
+    (n_frequencies,), (n_channels, n_frequencies), (n_channels, n_frequencies) descending
+    """
+    f = _lines_hz(sample_rate_hz, segment_length)
+    f = f[f <= below_hz]
+    n_segments = len(range(0, y.shape[1] - segment_length + 1, max(segment_length // 2, 1)))
+    if n_segments >= len(y):
+        matrix = spectral_matrix(y, sample_rate_hz, segment_length)[1][: f.size]
+        density = np.einsum("faa->af", matrix).real
+        matrix = matrix / np.multiply.outer(scale, scale)
+    else:
+        x = np.stack([lines[:, : f.size] for lines in _transforms(y, segment_length)], axis=1).T
+        x *= _norm(y, sample_rate_hz, segment_length)
+        x *= np.sqrt(_one_sided(segment_length))[: f.size, None, None]
+        density = np.sum(x.real**2 + x.imag**2, axis=1).T
+        x /= scale
+        matrix = x @ x.conj().transpose(0, 2, 1)
+    # for a positive Hermitian matrix these are the singular values, at a third of their cost
+    values = np.zeros((len(y), f.size))
+    values[: matrix.shape[1]] = np.abs(np.linalg.eigvalsh(matrix)[:, ::-1].T)
+    return f, np.asarray(density), values
+
+
 def _transforms(y: FloatArray, segment_length: int, *, less_mean: bool = False) -> Iterator[ComplexArray]:
     """Yield the transforms of all channels in one segment after the other, (n_channels, n_frequencies)."""
     window = hann(segment_length)
