@@ -92,7 +92,8 @@ def filled(store: Path, years: int) -> tuple[str, int]:
 
 
 _INSERT = """insert into modes (asset, model_hash, model_version, status, record_id, time_utc, label,
-frequency_hz, frequency_std_hz, damping_ratio) values (?, ?, 1, 'ok', ?, ?, ?, ?, ?, ?)"""
+frequency_hz, frequency_std_hz, frequency_relative_std, damping_ratio)
+values (?, ?, 1, 'ok', ?, ?, ?, ?, ?, 0.005, ?)"""
 
 
 def _modes(rng: np.random.Generator, model_hash: str, year: int) -> Iterator[tuple[object, ...]]:
@@ -102,7 +103,8 @@ def _modes(rng: np.random.Generator, model_hash: str, year: int) -> Iterator[tup
     for k in range(52_560):
         at = f"{first + timedelta(minutes=10 * k):%Y-%m-%d %H:%M:%S.%f}"
         for (label, f), (x, y) in zip(LABELS.items(), noise[k].tolist(), strict=True):
-            values = (f * (1.0 + 0.005 * x), 0.005 * f, 0.01 * math.exp(0.3 * y))
+            now = f * (1.0 + 0.005 * x)
+            values = (now, 0.005 * now, 0.01 * math.exp(0.3 * y))
             yield (ASSET, model_hash, f"{year:02d}{k:06d}", at, label, *values)
 
 

@@ -11,6 +11,7 @@ from sqlalchemy import Engine, event, func, select
 
 from jackettwin.store import mode_bins as module, reading, tables, writing
 from jackettwin.store.mode_bins import Extremes, ModeBins, forget_day, keep_days, modes_in_bins
+from jackettwin.store.results import list_modes
 
 BEGIN = datetime(2015, 3, 1, tzinfo=UTC)
 LABELS = ("fore_aft_1", "side_side_1")
@@ -29,6 +30,7 @@ def rows() -> list[dict[str, Any]]:
             "time_utc": BEGIN + timedelta(hours=k + (500 if k > 400 else 0)),
             "label": label,
             "frequency_hz": float(random.normal(0.3, 0.01)),
+            "frequency_std_hz": None if k % 5 == 0 else float(random.uniform(0.001, 0.002)),
             "damping_ratio": None
             if k % 3 == 0 and label == "side_side_1"
             else float(random.uniform(0.01, 0.02)),
@@ -54,6 +56,25 @@ def filled(database: Engine, monkeypatch: pytest.MonkeyPatch) -> Engine:
         strange = [{**ROWS[0], "model_hash": "old"}, {**ROWS[0], "asset": "other"}]
         connection.execute(tables.modes.insert(), [{**row, "frequency_hz": 9.0} for row in strange])
     return database
+
+
+@pytest.mark.parametrize("limit", [9, 2000])
+def test_the_least_known_come_first_as_an_index_has_them(filled: Engine, limit: int) -> None:
+    """Those that tell of no uncertainty last; of ten years no row is read that is not asked for."""
+    since = BEGIN + timedelta(days=9)
+    ratio = [(r["frequency_std_hz"] or 0.0) / r["frequency_hz"] for r in ROWS if r["time_utc"] >= since]
+    asked: list[tuple[str, Any]] = []
+    event.listen(
+        filled, "before_cursor_execute", lambda _c, _k, text, values, *_: asked.append((text, values))
+    )
+    with reading(filled) as connection:
+        found = list_modes(connection, "wtg", "m", since=since, limit=limit, least_known=True)
+        assert [(r["frequency_std_hz"] or 0.0) / r["frequency_hz"] for r in found] == pytest.approx(
+            sorted(ratio, reverse=True)[:limit]
+        )
+        if connection.dialect.name == "sqlite":
+            plan = connection.exec_driver_sql("explain query plan " + asked[-2][0], asked[-2][1]).all()
+            assert any("ix_modes_least_known" in row[-1] for row in plan), plan
 
 
 def expected(values: list[float | None]) -> tuple[float | None, ...]:

@@ -27,6 +27,10 @@ _TABLES = (
 Rows = dict[str, list[dict[str, Any]]]
 
 
+_MADE = ("id", "frequency_relative_std")
+"""Columns that a store makes: the number of a row, and what follows from others."""
+
+
 def copy_out(connection: Connection, asset: str) -> Rows:
     """Return the rows of an asset by table."""
     found = {}
@@ -62,5 +66,5 @@ def copy_in(connection: Connection, rows: Rows) -> None:
 
 
 def _columns(table: Table) -> list[Column[Any]]:
-    """Return the columns but the number of a row, which belongs to a store."""
-    return [column for column in table.c if column.name != "id"]
+    """Return the columns but those that a store makes."""
+    return [column for column in table.c if column.name not in _MADE]

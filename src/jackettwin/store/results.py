@@ -236,20 +236,24 @@ def list_modes(
 ) -> list[Mapping[str, Any]]:
     """Return modes over time, in the order of their identification; of a record, or of a state of operation.
 
-    With ``least_known``, the mode whose frequency has the largest relative standard deviation comes first.
+    With ``least_known``, the mode whose frequency has the largest relative standard deviation comes first;
+    those that tell of none come last.
     """
-    query = select(modes).filter_by(asset=asset, model_hash=model_hash).limit(limit)
-    if least_known:
-        query = query.order_by((modes.c.frequency_std_hz / modes.c.frequency_hz).desc().nulls_last())
-    query = query.order_by(modes.c.id)
+    query = select(modes).filter_by(asset=asset, model_hash=model_hash)
     if label is not None:
         query = query.where(modes.c.label == label)
     if record_id is not None:
         query = query.where(modes.c.record_id == record_id)
     if after is not None:
         query = query.where(modes.c.id > after)
-    query = of_state(query, modes.c.record_id, asset, state)
-    return _rows(connection, between(query, modes.c.time_utc, since, until))
+    query = between(of_state(query, modes.c.record_id, asset, state), modes.c.time_utc, since, until)
+    if not least_known:
+        return _rows(connection, query.order_by(modes.c.id).limit(limit))
+    vague = modes.c.frequency_relative_std
+    known = query.where(vague.is_not(None)).order_by(vague.desc(), modes.c.id)  # as an index has them
+    first = _rows(connection, known.limit(limit))
+    left = None if limit is None else limit - len(first)
+    return first + _rows(connection, query.where(vague.is_(None)).order_by(modes.c.id).limit(left))
 
 
 def list_findings(

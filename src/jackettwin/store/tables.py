@@ -188,6 +188,13 @@ observations = Table(
     Index("ix_observations_time", "asset", "model_hash", "start_utc", "record_id"),
 )
 
+
+def _relative_std(context: Any) -> float | None:
+    row = context.get_current_parameters()
+    std, frequency = row.get("frequency_std_hz"), row["frequency_hz"]
+    return None if std is None or not frequency else std / frequency
+
+
 modes = Table(
     "modes",
     metadata,
@@ -205,7 +212,9 @@ modes = Table(
     Column("damping_ratio_low_90", Float),
     Column("damping_ratio_high_90", Float),
     Column("status", String(255), nullable=False),
+    Column("frequency_relative_std", Float, default=_relative_std),
     Index("ix_modes_label", "asset", "label", "time_utc"),
+    Index("ix_modes_least_known", "asset", "model_hash", "frequency_relative_std", "time_utc"),
     Index("ix_modes_record", "asset", "record_id"),
     Index("ix_modes_page", "asset", "model_hash", "id"),
 )
