@@ -186,11 +186,15 @@ def guess_quantity(name: str, unit: str) -> str:
 
     >>> guess_quantity("YawBrTAxp", "m/s^2"), guess_quantity("Wind1VelX", "m/s")
     ('acceleration', 'wind speed')
+    >>> guess_quantity("tower_top_x_m/s2", ""), guess_quantity("hub_m/s", "")
+    ('acceleration', 'other')
     """
     allowed = [kind for kind, q in QUANTITIES.items() if kind != "other" and _has_unit(q, unit)]
     lower = name.lower()
     named = [kind for kind, words in _WORDS if any(word in lower for word in words)]
     if not unit or (not allowed and lower.startswith("acc")):
+        if not named and "/" in unit_in_name(name, "acceleration"):
+            return "acceleration"
         return named[0] if named and named[0] in VIBRATIONS else "other"
     both = [kind for kind in named if kind in allowed]
     if both:
