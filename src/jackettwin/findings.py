@@ -58,6 +58,16 @@ CATALOGUE: dict[str, Kind] = {
         "every sample of every channel is repeated {times} times; only one of them is used. If the repeats "
         "are copies of one instant, all frequencies are {times} times those stated here",
     ),
+    "resampled_by_holding": Kind(
+        "info",
+        "all channels change together and hold their values in between: a record of {rate_hz:.4g} Hz that "
+        "was brought to a higher rate; its own samples are used",
+    ),
+    "blanks_filled": Kind(
+        "info",
+        "every {times}th sample is there, and blanks between: sampled at {rate_hz:.4g} Hz beside faster "
+        "channels; interpolated",
+    ),
     "another_time": Kind(
         "alarm",
         "{channels}: the spectrum has the peaks of the other channels, but the samples match theirs at no "

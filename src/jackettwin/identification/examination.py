@@ -203,7 +203,7 @@ def made_ready(
     findings = (
         *absent,
         *doubts,
-        *(f for f in stepped if f.severity != "alarm"),
+        *(f for f in (*repeated, *stepped) if f.severity != "alarm"),
         *crossed,
         *findings,
         *unplaced(chosen),
