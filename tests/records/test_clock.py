@@ -82,3 +82,21 @@ def test_stamps_that_stand_still_for_a_while_are_no_ticks() -> None:
 def test_a_stated_rate_must_agree_with_the_stamps() -> None:
     with pytest.raises(InputError, match=r"contradicts.*got 25.*allowed: 20"):
         regularise(np.arange(100) / 20.0, np.zeros((1, 100)), sample_rate_hz=25.0)
+
+
+def test_loggers_of_two_rates_in_one_table_are_each_interpolated_by_their_own_samples() -> None:
+    """20 and 25 Hz, the second from 60 s on: where it has no samples there are none."""
+    a, b = np.arange(4000) / 20.0, 60.0 + np.arange(3000) / 25.0
+    t = np.unique(np.round(np.concatenate([a, b]), 4))
+    y = np.full((2, t.size), np.nan)
+    for row, own in zip(y, (a, b), strict=True):
+        row[np.searchsorted(t, np.round(own, 4))] = np.sin(2.0 * np.pi * 0.3 * own)
+    out, clock = regularise(t, y)
+    grid = np.arange(out.shape[1]) / clock.sample_rate_hz
+    # (ωΔt)²/8 of a straight line between samples, and the last step of the rate; 1.5 steps beyond the ends
+    inside = np.isfinite(out)
+    assert np.abs(out - np.sin(2.0 * np.pi * 0.3 * grid))[inside].max() < 0.1
+    assert np.std((out - np.sin(2.0 * np.pi * 0.3 * grid))[inside]) < 0.01
+    assert not inside[1, grid < 59.9].any()
+    assert inside[1, (grid > 60.0) & (grid < 179.9)].all()
+    assert inside[0, grid < 199.9].all()

@@ -202,9 +202,19 @@ def shortest_decimal(rate: float, tolerance: float) -> float:
 
 
 def _interpolate(grid: FloatArray, t: FloatArray, y: FloatArray, longest: float) -> FloatArray:
-    """Interpolate linearly, leaving NaN where the neighbouring stamps are farther apart than ``longest``."""
-    right = np.clip(np.searchsorted(t, grid), 1, len(t) - 1)
-    out = np.vstack([np.interp(grid, t, row) for row in y])
-    # a lost stamp leaves two steps between its neighbours, plus or minus the jitter
-    out[:, (t[right] - t[right - 1]) > longest] = np.nan
+    """Interpolate linearly, leaving NaN where the neighbouring stamps are farther apart than ``longest``.
+
+    A channel of a slower logger, which has samples at some of the stamps only, has longer steps of its own.
+    """
+    out = np.full((len(y), grid.size), np.nan)
+    for row, samples in zip(out, y, strict=True):
+        there = np.isfinite(samples)
+        own = t[there]
+        if own.size < 2:
+            continue
+        right = np.clip(np.searchsorted(own, grid), 1, own.size - 1)
+        # a lost stamp leaves two steps between its neighbours, plus or minus the jitter
+        near = own[right] - own[right - 1] <= max(longest, 1.5 * float(np.median(np.diff(own))))
+        near &= (grid > own[0] - longest) & (grid < own[-1] + longest)
+        row[near] = np.interp(grid[near], own, samples[there])
     return out
