@@ -179,6 +179,7 @@ FAULTS = (
         ("learning forgets to shrink the covariance", "row[j] -= part * g[j]", "row[j] -= 0.5 * part * g[j]"),
         ("innovations are not divided by their variance", "mean[i] += g[i] * nu / s", "mean[i] += g[i] * nu"),
         ("Bayes factors of steps lack one half", "each[k] = 0.5 * (bent / wide - np.log(wide)) + own[k]", "each[k] = (bent / wide - np.log(wide)) + own[k]"),
+        ("what a missing condition does is nothing", "(0.0 if lacking is None else lacking)", "(0.0 if lacking is None else 0.0 * lacking)"),
         ("slow regressors start anew with a baseline", "np.where(slow, last, first)", "np.where(slow, first, first)"),
         ("processes age with the square root of time", "np.exp(-gaps[r] * rates[k])", "np.exp(-np.sqrt(gaps[r] * rates[k]))"),
     )),

@@ -293,7 +293,7 @@ def another_state(c: Columns) -> None:
     [
         (still, "always the same: f1"),
         (endless, "1 values of frequency_hz (f1) that are not above zero or infinite count as missing"),
-        (without_temperature, "temperature is missing in 86 % of the rows watched"),
+        (without_temperature, "temperature is missing or always the same in 86 % of the rows watched"),
         (another_state, "not judged: idling (100 rows)"),
     ],
     ids=lambda x: getattr(x, "__name__", "said"),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.watching import History, start
-from jackettwin.watching.variance_shares import slopes
+from jackettwin.watching.condition_effects import slopes
 
 
 def test_a_planted_effect_is_told_by_unit_of_its_condition(quiet: History) -> None:

@@ -29,10 +29,11 @@ from jackettwin.watching import (
     start,
     typical,
     unexplained_std,
+    unseen_share,
 )
+from jackettwin.watching.condition_effects import shares, slopes
 from jackettwin.watching.design import WHOLE_YEAR_DAYS
 from jackettwin.watching.history import deviations
-from jackettwin.watching.variance_shares import shares, slopes
 from jackettwin.watching.watch import columns_to_watch
 
 _MISSING = 0.1
@@ -262,10 +263,12 @@ def _gaps(watch: Watch, rest: History) -> list[str]:
     """Return remarks on missing data of monitored rows."""
     if not rest.days.size:
         return []
-    share = {c.name: np.mean(~np.isfinite(rest.conditions[:, c.source])) for c in watch.design.columns
-             if c.source >= 0}  # fmt: skip
+    limit = np.full(rest.conditions.shape[1], np.inf) if watch.usual is None else watch.usual.still_after
+    unseen = unseen_share(rest, limit)
+    share = {c.name: unseen[c.source] for c in watch.design.columns if c.source >= 0}
     said = [
-        f"{name} is missing in {100.0 * x:.0f} % of the rows watched: there it counts as its mean"
+        f"{name} is missing or always the same in {100.0 * x:.0f} % of the rows watched: there its effect is "
+        "unknown, and a change takes longer to be found"
         for name, x in share.items()
         if x > _MISSING
     ]

@@ -5,6 +5,7 @@ from .causes import (
     sizes_about as sizes_about,
 )
 from .change import Change as Change
+from .condition_effects import unexplained_std as unexplained_std, unseen_share as unseen_share
 from .design import (
     Design as Design,
     Lagged as Lagged,
@@ -37,7 +38,6 @@ from .level import (
     smoothed as smoothed,
 )
 from .state import Watch as Watch
-from .variance_shares import unexplained_std as unexplained_std
 from .watch import (
     Look as Look,
     PendingChange as PendingChange,

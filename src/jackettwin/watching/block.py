@@ -263,13 +263,19 @@ def _set_apart(
     return apart, doubt, tail
 
 
-def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, FloatArray, Block]:
-    """Return a day's hourly averages, the number of rejected values (m,), and the updated block."""
+def hours_of(
+    block: Block, history: History, rows: FloatArray, lacking: FloatArray | None = None
+) -> tuple[Hours, FloatArray, Block]:
+    """Return a day's hourly averages, the number of rejected values (m,), and the updated block.
+
+    ``lacking`` is the variance (n, m) of what missing conditions do.
+    """
     y, rest, variance, moving = residuals(block, history, rows)
     apart, doubt, tail = outliers(rest, moving, block.tail)
     told = _rejected_by_others(apart, y)
     y[apart] = np.nan
-    hours = by_hour(history.days, history.states, np.nan_to_num(rows), y, variance * doubt, WINDOW_DAYS)
+    noise = variance * doubt + (0.0 if lacking is None else lacking)
+    hours = by_hour(history.days, history.states, np.nan_to_num(rows), y, noise, WINDOW_DAYS)
     return hours, told, replace(block, tail=tail)
 
 
@@ -285,12 +291,12 @@ def residuals(
     x = np.nan_to_num(rows)
     variance = _variance(relative, block.usual_std) * block.louder**2
     memory = block.memories[0]
-    mean, cov = _coefficients(block)
+    mean, cov = coefficients(block)
     moving = variance * memory.scale**2 + memory.std**2 + _unsure(cov, x - x.mean(axis=0))
     return y, y - x @ mean.T, variance, moving
 
 
-def _coefficients(block: Block) -> tuple[FloatArray, FloatArray]:
+def coefficients(block: Block) -> tuple[FloatArray, FloatArray]:
     """Return the current coefficients (m, p) and their covariances (m, p, p)."""
     return _first_coefficients(block.beliefs[0], *block.reference.shape)
 
@@ -360,7 +366,7 @@ def _expected(block: Block, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
     what an unusual condition does is learnt from the days that show it, while the level stays the baseline's,
     so that what remains is the change. The level at x̄ and the effects about it are estimated independently.
     """
-    mean, cov = _coefficients(block)
+    mean, cov = coefficients(block)
     if block.centre is None or block.level_variance is None:
         return rows @ block.reference.T, _unsure(cov, rows)
     state = rows[:, : len(block.centre)]

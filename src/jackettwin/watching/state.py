@@ -9,6 +9,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.constants import YEAR_DAYS
 from jackettwin.watching.block import Block
+from jackettwin.watching.condition_effects import LastSeen, UsualConditions
 from jackettwin.watching.design import Design, Lagged
 from jackettwin.watching.directions import SHARES
 from jackettwin.watching.history import Kind
@@ -50,6 +51,8 @@ class Watch:
     power : power applied to the evidence
     crossing : threshold over the mean of the statistic at an alarm, by which the threshold is corrected
     without_scatter : (m_all,) quantities whose noise is not tested for want of scatter in hours; or empty
+    usual, seen : what the baseline says of its conditions, and state of their sensors; None in states stored
+        before they were kept
     """
 
     labels: tuple[str, ...]
@@ -65,6 +68,8 @@ class Watch:
     power: float = 1.0
     crossing: float = 1.0
     without_scatter: tuple[bool, ...] = ()
+    usual: UsualConditions | None = None
+    seen: LastSeen | None = None
 
     @property
     def staked(self) -> float:

@@ -24,6 +24,7 @@ from jackettwin.watching.block import (
     DayResult,
     begin,
     cleared,
+    coefficients,
     hours_of,
     log_evidence,
     log_scatter,
@@ -37,6 +38,13 @@ from jackettwin.watching.block import (
     with_weights_reset,
 )
 from jackettwin.watching.change import Change, change_of
+from jackettwin.watching.condition_effects import (
+    absent_variance,
+    never_seen,
+    still_after,
+    usual_conditions,
+    without_still,
+)
 from jackettwin.watching.day_parts import INSIDE, divided
 from jackettwin.watching.design import (
     WHOLE_YEAR_DAYS,
@@ -147,6 +155,8 @@ def learnt(
     baseline: History, arl_years: float, patterns: Sequence[Pattern] = (), slopes: Sequence[Slope] = ()
 ) -> Watch:
     """Return what :func:`start` does before its threshold is corrected and its changes are selected."""
+    limit = still_after(baseline)
+    baseline, _, seen = without_still(baseline, never_seen(baseline), limit)
     kept = columns_to_watch(baseline)
     design = with_slow_processes(design_of(baseline), baseline)
     rows, lagged = regressors(design, baseline, fresh(design, baseline))
@@ -177,6 +187,8 @@ def learnt(
         arl_years,
         min(PATIENCE * span, MOST_PATIENCE_DAYS) if design.hidden else 0.0,
         GUARDED if design.hidden and span > WHOLE_YEAR_DAYS else 1.0,
+        usual=usual_conditions(design, baseline, rows, limit),
+        seen=seen,
     )
 
 
@@ -262,6 +274,10 @@ def _with_day(watch: Watch, day: History) -> tuple[Watch, tuple[DayResult, ...]]
     Possible onsets are the first record of the day and the record that divides it. As the latter is chosen
     from the data, it only has its share of the prior weight of all records that might have been chosen.
     """
+    missing = np.zeros(day.conditions.shape, dtype=np.bool_)
+    if watch.usual is not None and watch.seen is not None:
+        day, missing, seen = without_still(day, watch.seen, watch.usual.still_after)
+        watch = replace(watch, seen=seen)
     rows, lagged = regressors(watch.design, day, watch.lagged)
     cut = _cut(watch, day, rows)
     today = float(np.floor(day.days[0]))
@@ -278,7 +294,7 @@ def _with_day(watch: Watch, day: History) -> tuple[Watch, tuple[DayResult, ...]]
     for part, onset, log_stake in parts:
         chosen = np.arange(day.days.size)[part]
         records = day if cut is None else day.rows(np.isin(np.arange(day.days.size), chosen))
-        watch, spoken = _with_records(watch, records, rows[part], onset, log_stake)
+        watch, spoken = _with_records(watch, records, rows[part], missing[part], onset, log_stake)
     return replace(watch, lagged=lagged, accounted=max(today, watch.accounted)), spoken
 
 
@@ -292,12 +308,15 @@ def _cut(watch: Watch, day: History, rows: FloatArray) -> tuple[int, int] | None
 
 
 def _with_records(
-    watch: Watch, records: History, rows: FloatArray, begin: float, log_stake: float
+    watch: Watch, records: History, rows: FloatArray, missing: BoolArray, begin: float, log_stake: float
 ) -> tuple[Watch, tuple[DayResult, ...]]:
     """Return the state after some records of a day, with an onset before the first of them."""
     blocks, spoken = [], []
     for block in watch.blocks:
-        hours, apart, block = hours_of(block, records, rows)
+        lacking = None
+        if watch.usual is not None:
+            lacking = absent_variance(watch.design, watch.usual, missing, rows, coefficients(block)[0])
+        hours, apart, block = hours_of(block, records, rows, lacking)
         block, said = with_hours(block, hours, apart, watch.last_day)
         blocks.append(block)
         spoken.append(said)
