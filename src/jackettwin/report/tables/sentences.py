@@ -415,7 +415,7 @@ def _identifiability(a: Answers) -> list[str]:
         return []
     of = count(len(judged), "ground parameter")
     return [
-        f"{len(known)} of {of} {'is' if len(judged) == 1 else 'are'} known within a factor of {a.usable:g}."
+        f"{len(known)} of {of} {'is' if len(known) == 1 else 'are'} known within a factor of {a.usable:g}."
     ]
 
 
