@@ -4,8 +4,8 @@ Usage: python qualify/diagnosis.py [draws a cause and size]
 
 The truth is another jacket than the model's: the stiffness of every foot, the ground's loss and what the
 model misses are drawn, and a cause is solved anew at its size. What the watch knows of the change is drawn
-with the uncertainty that a month of the seasons of ``qualify/watching.py`` leaves, then with so much more
-that it just suffices for an alarm; ``diagnosis_chain.py`` simulates and identifies records instead.
+with the uncertainty that a month of the seasons of ``qualify/watching.py`` leaves, and that of the first day
+that suffices for an alarm; ``diagnosis_chain.py`` simulates and identifies records instead.
 """
 
 from __future__ import annotations
@@ -43,6 +43,8 @@ SENSORS = {"sensor: clock": 1e-3, "sensor: yaw misread": 0.05}
 LEAST = 25.0
 """Squared distance from no change, in variances, below which no alarm would have asked: ln of ten years
 in days and of the stakes, twice over."""
+DAYS = 30
+"""Within which an alarm is waited for: of the month."""
 CONFIDENT = 0.9
 
 
@@ -116,20 +118,30 @@ def seen_change(delta: np.ndarray, kinds: list[str], rng: np.random.Generator, l
 
 
 def on_the_day(change: Change, rng: np.random.Generator) -> tuple[Change, ...]:
-    """Return what the watch knew of a change on the day of the alarm, if any: the same with more noise.
+    """Return what the watch knew of a change on the day of the alarm, if there was one within the month.
 
-    Louder noise is no matter of that.
+    The month's information comes in equal parts a day, and the alarm on the first day on which the squared
+    distance from no change exceeds ``LEAST``. The score until a day is drawn given that of the month, a
+    Brownian bridge: what is known on the day is from the records until then. Louder noise is no matter of
+    that.
     """
     if np.any(change.log_scatter > 0.0):
         return ()
-    times = max(np.sqrt(change.by_mode.sum() / LEAST), 1.0)
-    more = np.sqrt(times**2 - 1.0) * change.size_std * rng.standard_normal(change.size.size)
-    size, std, info = change.size + more, times * change.size_std, change.info / times**2
+    share = np.arange(1, DAYS + 1)[:, None] / DAYS
+    steps = rng.standard_normal((DAYS, change.size.size)) / np.sqrt(DAYS) / change.size_std
+    walk = np.cumsum(steps, axis=0)
+    score = share * change.score[0] + walk - share * walk[-1]
+    size, std = score * change.size_std**2 / share, change.size_std / np.sqrt(share)
+    square = (size / std) ** 2
+    alarms = np.flatnonzero(square.sum(axis=1) > LEAST)
+    if not alarms.size:
+        return ()
+    day = alarms[0]
     known = replace(
-        change, size=size, size_std=std, info=info, score=np.einsum("tij,j->ti", info, size),
-        by_mode=(size / std) ** 2,
+        change, size=size[day], size_std=std[day], info=share[day] * change.info,
+        score=score[day : day + 1], by_mode=square[day],
     )  # fmt: skip
-    return (known,) if known.by_mode.sum() > LEAST else ()
+    return (known,)
 
 
 Case = tuple[str, str, str, int, float, bool, bool, bool]
@@ -172,11 +184,11 @@ def cases(jacket: str, structure: Structure, draws: int) -> tuple[list[Case], li
 
         def judged(name: str, times: int, delta: np.ndarray, louder: bool = False) -> None:
             change = seen_change(delta, kinds, rng, louder)  # noqa: B023
-            if louder or change.by_mode.sum() > LEAST:
-                known = change.restricted(seen.known)  # noqa: B023
-                out.append(case(jacket, name, times, diagnose(known, seen.causes, own)))  # noqa: B023
-                for first in on_the_day(known, later):
-                    early.append(case(jacket, name, times, diagnose(first, seen.causes, own)))  # noqa: B023
+            late = (change,) if louder or change.by_mode.sum() > LEAST else ()
+            for of, known in (out, late), (early, on_the_day(change, later)):
+                for one in known:
+                    found = diagnose(one.restricted(seen.known), seen.causes, own)  # noqa: B023
+                    of.append(case(jacket, name, times, found))
 
         for event in planted(structure):
             name = name_of(event.name, seen.causes)
@@ -213,6 +225,13 @@ def calibration(found: list[Case], *, shared: bool = False) -> tuple[float, floa
     return float(error[0]), float(error[1:].mean()), float(np.quantile(error[1:], 0.95))
 
 
+def confident(found: list[Case]) -> str:
+    """Return how many were wrong and in no group with the truth though sure, and how many were expected."""
+    sure = [c for c in found if c[4] > CONFIDENT]
+    wrong = sum(not c[5] and not c[7] for c in sure)
+    return f"{wrong} of {len(found)}; {sum(1.0 - c[4] for c in sure):.1f}"
+
+
 DRAWN = (
     "# Diagnosis",
     "",
@@ -230,7 +249,7 @@ DRAWN = (
 EARLY = (
     "## On the day of the alarm",
     "",
-    "The same changes, with data just sufficient for the alarm.",
+    "The same changes on the first day of the month whose data suffice for an alarm, if there is one.",
     "",
 )
 
@@ -241,7 +260,6 @@ def page(found: list[Case], head: Sequence[str], *, shared: bool = False, **numb
     grouped = [c for c in found if c[6]]
     error, chance, most = calibration(found, shared=shared)
     said, right = np.mean([c[4] for c in found]), np.mean([c[5] for c in found])
-    confident = sum(c[4] > CONFIDENT and not c[5] and not c[7] for c in found)
     lines = [
         *(line.format(**numbers) for line in head),
         "| | share |",
@@ -252,7 +270,8 @@ def page(found: list[Case], head: Sequence[str], *, shared: bool = False, **numb
         f"| the same of as many cases with exact probabilities, by chance: mean; 95 of 100 below | "
         f"{100 * chance:.1f} %; {100 * most:.1f} % |",
         f"| probability of the first place, mean; right | {100 * said:.0f} %; {100 * right:.0f} % |",
-        f"| wrong with more than {100 * CONFIDENT:.0f} % | {confident} of {len(found)} |",
+        f"| wrong with more than {100 * CONFIDENT:.0f} %; expected of these probabilities | "
+        f"{confident(found)} |",
         "",
         "| planted | right | in its inseparable group | most often taken for |",
         "|---|---|---|---|",

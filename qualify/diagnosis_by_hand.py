@@ -6,7 +6,7 @@ Members are cut out, weakened and flooded, walls thinned, masses added on the dr
 head stiffness from the soil's curves with the ground gone; sensors' clocks and the yaw are wrong, and what is
 something else changes at random. The stiffness of every foot and member differs from the model's. Modes
 are solved before and after and paired by shape here; the change is seen with the noise of a month of seasons,
-and on the day on which it is just sufficient for an alarm. Changes that would raise no alarm are left out.
+and on the first day that suffices for an alarm. Changes that would raise no alarm are left out.
 """
 
 from __future__ import annotations
@@ -20,7 +20,17 @@ from pathlib import Path
 import numpy as np
 from common.command import arguments
 from common.page import write_page
-from diagnosis import CONFIDENT, LEAST, STD, Case, calibration, jackets, on_the_day, seen_change
+from diagnosis import (
+    CONFIDENT,
+    LEAST,
+    STD,
+    Case,
+    calibration,
+    confident,
+    jackets,
+    on_the_day,
+    seen_change,
+)  # fmt: skip
 from scipy.optimize import linear_sum_assignment
 
 from jackettwin.change.causes import model_causes, seen_causes
@@ -352,11 +362,11 @@ def cases(jacket: str, structure: Structure, draws: int, sizes: Sizes) -> tuple[
             every += [(SETS * draw + k, *one) for one in odd]
         for number, wanted, ln_f, ln_z in every:
             known = seen_change(np.concatenate([ln_f, ln_z]), kinds, rng, False)
-            if known.by_mode.sum() < LEAST:
-                continue
-            for seen_now, of in ((known, out), *((first, early) for first in on_the_day(known, later))):
-                found = diagnose(seen_now.restricted(seen.known), seen.causes, own)
-                of.append(judged(jacket, wanted, number, found))
+            late = (known,) if known.by_mode.sum() > LEAST else ()
+            for of, seen_then in (out, late), (early, on_the_day(known, later)):
+                for one in seen_then:
+                    found = diagnose(one.restricted(seen.known), seen.causes, own)
+                    of.append(judged(jacket, wanted, number, found))
             sys.stderr.write(f"{jacket} {draw}: {len(out)} {wanted} {np.round(100 * ln_f, 2)}\n")
     return early, out
 
@@ -372,8 +382,8 @@ model's, {draws} of each drawing, changed on the drawing: braces cut, weakened a
 thinned, masses added; scour by soil curves; wrong clocks and yaw, and something else at random;
 {sets} of each, with other sizes and places. The truth does not use `jackettwin.change`. Five modes;
 the model's feet are fitted to the frequencies before. Changes too small for an alarm are left out.
-A month after the change it is known to 0.03 % and 2 % of frequency and damping; on the day of the
-alarm with what just suffices for it.
+A month after the change it is known to 0.03 % and 2 % of frequency and damping; the day of the
+alarm is the first of the month whose data suffice for it.
 """
 
 
@@ -389,7 +399,7 @@ def page(found: dict[str, tuple[list[Case], list[Case]]], draws: int) -> list[st
 def tables(found: list[Case]) -> list[str]:
     """Return shares, and what became of each jacket and change."""
     error, chance, most = calibration(found)
-    confident = [c for c in found if c[4] > CONFIDENT and not c[5] and not c[7]]
+    wrong_sure = [c for c in found if c[4] > CONFIDENT and not c[5] and not c[7]]
     said = np.mean([c[4] for c in found])
     lines = [
         "| | |",
@@ -397,7 +407,8 @@ def tables(found: list[Case]) -> list[str]:
         f"| first place, or in its declared group | {share(sum(c[5] or c[7] for c in found), len(found))} |",
         f"| first place | {share(sum(c[5] for c in found), len(found))} |",
         f"| probability of the first place, mean | {100 * said:.0f} % |",
-        f"| wrong with more than {100 * CONFIDENT:.0f} % | {len(confident)} of {len(found)} |",
+        f"| wrong with more than {100 * CONFIDENT:.0f} %; expected of these probabilities | "
+        f"{confident(found)} |",
         f"| expected calibration error; by chance, mean and 95 of 100 below | {100 * error:.1f} %; "
         f"{100 * chance:.1f} %; {100 * most:.1f} % |",
         "",
@@ -406,7 +417,7 @@ def tables(found: list[Case]) -> list[str]:
     ]
     for jacket in dict.fromkeys(c[0] for c in found):
         own = [c for c in found if c[0] == jacket]
-        sure = sum(c in confident for c in own)
+        sure = sum(c in wrong_sure for c in own)
         lines.append(f"| {jacket} | {share(sum(c[5] or c[7] for c in own), len(own))} | {sure} |")
     lines += [
         "",
