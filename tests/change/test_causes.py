@@ -13,6 +13,7 @@ from jackettwin.change.causes import (
     mixing,
     model_causes,
     namings,
+    repeated,
     seen_causes,
     turned,
 )
@@ -172,6 +173,15 @@ def test_bending_shows_at_the_top_and_torsion_off_the_axis(model: ModelCauses) -
     node = named["torsion_1"].split(" at ")[1].split(" along ")[0]
     x, y, z = read_structure("jacket15").nodes[node]
     assert np.hypot(x, y) > 1.0 and z > 72.0  # above the sea
+
+
+def test_a_softening_is_a_share_of_what_the_ground_had(stands: Standing) -> None:
+    """Three times a tenth is 30 %, not 27, and nothing loses more than all."""
+    (soil,) = [h for h in happenings(stands) if h.name == "soil softening"]
+    softer = repeated(soil, 3)
+    assert softer.per == pytest.approx(0.3) and soil.largest == 1.0
+    np.testing.assert_allclose(softer.apply(stands).horizontal, 0.7 * stands.horizontal)
+    np.testing.assert_allclose(soil.apply(stands).vertical, 0.9 * stands.vertical)
 
 
 def test_a_weakened_brace_keeps_seven_tenths_of_its_stiffness_and_all_of_its_mass() -> None:

@@ -56,7 +56,7 @@ _ONE_SIZE = 0.1
 _SHOWS = 3e-4
 """Change of all ln f, at the usual size, below which a cause is not bet on: it would take years to detect."""
 _SOLVED = (3, 5)
-"""Multiples of an event for which its change is computed; sizes reach up to five. Between them,
+"""Multiples of an event for which its change is computed; few sizes reach beyond five. Between them,
 cubics have errors of some per cent for a brace or for the splash zone, whose walls are half gone by then."""
 _KEPT = 0.7
 """Smallest share of a mode's kinetic energy among the modes of the whole structure."""
@@ -118,7 +118,7 @@ class ModelCauses:
         for cause in self.causes:
             once = cause.draws.mean(axis=0)
             change = np.array([once[self.labels.index(n)] if self.tells(n) else 0.0 for n in labels])
-            if np.abs(change).max() * np.median(np.abs(cause.sizes)) > _SHOWS:
+            if np.abs(change).max() * cause.usual > _SHOWS:
                 found.append(Pattern(cause.name, change, cause.prior))
         return tuple(found)
 
@@ -191,7 +191,9 @@ def model_causes(
         if np.abs(draws[:, : 2 * MODES] * event.median).max() < _TRACE:
             traceless.append(event.name)
         else:
-            sizes, weights = sizes_about(event.median, event.spread, both_ways=event.both_ways)
+            sizes, weights = sizes_about(
+                event.median, event.spread, both_ways=event.both_ways, larger=True, largest=event.largest
+            )  # fmt: skip
             solved = () if event.spread < _ONE_SIZE else [repeated(event, times) for times in _SOLVED]
             bends = [
                 effect(often, bases[0], modes_after(often, stands[:1], bases[:1])[0], loss[0], zeta)
@@ -339,7 +341,8 @@ def repeated(event: Happening, times: int) -> Happening:
             standing = event.apply(standing)
         return standing
 
-    return replace(event, apply=apply, per=times * event.per)
+    often = apply if event.often is None else event.often(times)
+    return replace(event, apply=often, per=times * event.per)
 
 
 def happened(event: Happening, stands: Sequence[Standing]) -> list[Standing]:
@@ -498,7 +501,7 @@ def _cosine(one: Cause, other: Cause) -> float:
 
 def _clock() -> Cause:
     """Return the cause of a wrong clock: all frequencies change alike, exactly so, damping does not."""
-    sizes, weights = sizes_about(1e-3, 1.2, both_ways=True)
+    sizes, weights = sizes_about(1e-3, 1.2, both_ways=True, larger=True, finer=5)
     direction = np.repeat([1.0, 0.0, 0.0], MODES)[None]
     return Cause("sensor: clock", direction, sizes, weights, "-", prior=0.5, misfit=0.0)
 

@@ -23,7 +23,7 @@ _LEG = 0.9
 _SPLASH = (-3.0, 6.0)
 """Splash zone about mean sea level [m]."""
 _WEAKENED = "× 30 % off"
-"""Unit of a brace's loss: the effect of 30 % less stiffness. Twice the effect is not 60 %,
+"""Unit of a brace's or a connection's loss: the effect of 30 % less stiffness. Twice the effect is not 60 %,
 since load shifts to the neighbours faster the less stiffness is left."""
 _ON_BLADES = 2.0
 """Inertia by mass of what lies on blades, as ice does, over that of the whole RNA: the rotor has nearly all
@@ -68,6 +68,8 @@ class Happening:
     both_ways : whether it may be negative as well
     damps : damping ratio a unit of the logarithm of frequency lost: friction in a loose joint
     or_else : the structure after another form of it; what happens is any mean of both
+    often : the structure after so many times as much, if that is not the change again and again
+    largest : no size reaches it
     """
 
     family: str
@@ -80,6 +82,8 @@ class Happening:
     both_ways: bool = False
     damps: float = 0.0
     or_else: Callable[[Standing], Standing] | None = None
+    often: Callable[[int], Callable[[Standing], Standing]] | None = None
+    largest: float = float("inf")
 
 
 PLUGINS = "jackettwin.causes"
@@ -96,7 +100,9 @@ def happenings(standing: Standing) -> tuple[Happening, ...]:
         Happening("growth", "marine growth", _grown, 0.05, 0.02, 1.2, "m"),
         *_tops(structure),
         Happening("corrosion", "corrosion of the splash zone", _corroded, 0.002, 0.003, 0.8, "m"),
-        Happening("connection", "grouted or bolted connection", _loosened, 0.3, 0.3, 0.8, "-", damps=0.5),
+        Happening(
+            "connection", "grouted or bolted connection", _loosened, 1.0, 1.0, 0.8, _WEAKENED, damps=0.5
+        ),
         *(happening for happenings_of in added for happening in happenings_of(standing)),
     )
 
@@ -106,7 +112,9 @@ def _grounds(structure: Structure) -> Iterator[Happening]:
     feet = structure.reaction_nodes
     for i, node in enumerate(feet if len(feet) > 1 else ()):
         yield Happening("scour at one foot", f"scour at {node}", _scoured_at(i), 1.0, 1.5, 0.8, "m")
-    yield Happening("soil", "soil softening", _softened, 0.1, 0.1, 0.8, "-")
+    yield Happening(
+        "soil", "soil softening", _softened(1), 0.1, 0.1, 0.8, "-", often=_softened, largest=1.0
+    )  # fmt: skip
 
 
 def _scoured_at(foot: int) -> Callable[[Standing], Standing]:
@@ -122,8 +130,9 @@ def _scoured(standing: Standing, foot: int | None) -> Standing:
     return replace(standing, horizontal=standing.horizontal * sideways, vertical=standing.vertical * axially)
 
 
-def _softened(standing: Standing) -> Standing:
-    return replace(standing, horizontal=0.9 * standing.horizontal, vertical=0.9 * standing.vertical)
+def _softened(tenths: int) -> Callable[[Standing], Standing]:
+    left = 1.0 - 0.1 * tenths
+    return lambda s: replace(s, horizontal=left * s.horizontal, vertical=left * s.vertical)
 
 
 def _braces(structure: Structure) -> Iterator[Happening]:

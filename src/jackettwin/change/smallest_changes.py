@@ -97,9 +97,8 @@ def _of_structure(watch: Watch, seen: Sight, causes: ModelCauses) -> Iterator[Sm
 
     for cause in over.causes:
         if cause.name in _LARGEST:
-            usual = float(np.median(np.abs(cause.sizes)))
-            high = min(_RANGE[1] * usual, _LARGEST[cause.name])
-            size = seen.smallest(lambda x, c=cause: steps(c, x), _RANGE[0] * usual, high)  # type: ignore[misc]
+            high = min(_RANGE[1] * cause.usual, _LARGEST[cause.name])
+            size = seen.smallest(lambda x, c=cause: steps(c, x), _RANGE[0] * cause.usual, high)  # type: ignore[misc]
             moved = () if size is None else tuple(np.round(steps(cause, size).mean(axis=0), 7).tolist())
             yield SmallestChange(cause.name, seen.days, size, cause.unit, step=moved)
     lost = [c for c in over.causes if c.name.split(" (or ")[0].endswith(_ALL_OR_NONE)]

@@ -19,7 +19,10 @@ _SENSOR_SHIFT = 0.002
 is two hundred times as large."""
 _DAMPING_OVER_FREQUENCY = 200.0
 REACH = 2.0
-"""Range of ln size considered on either side of its middle, in spreads."""
+"""Range of ln size about its middle within which all are equally likely, in spreads."""
+_LARGER = 0.05
+"""Prior probability of a size beyond that, up to twice as far: without them, a mass of seven per cent
+was called marine growth or something else with certainty."""
 _STEP = 0.025
 """Step of ln size: a third of the accuracy of a size whose direction is that of the best available model."""
 MISFIT = 0.12
@@ -66,6 +69,13 @@ class Cause:
     alike: tuple[str, ...] = ()
     mixing: FloatArray | None = None
 
+    @property
+    def usual(self) -> float:
+        """Median of the sizes."""
+        order = np.argsort(np.abs(self.sizes))
+        share = np.cumsum(np.exp(self.log_size_weights[order]))
+        return float(np.abs(self.sizes)[order[np.searchsorted(share, 0.5 * share[-1])]])
+
     def steps(self, sizes: FloatArray) -> FloatArray:
         """Return the mean change of all quantities, (n_sizes, m).
 
@@ -79,16 +89,36 @@ class Cause:
         return np.asarray(sizes[:, None] * J)
 
 
-def sizes_about(middle: float, spread: float, *, both_ways: bool = False) -> tuple[FloatArray, FloatArray]:
+def sizes_about(
+    middle: float,
+    spread: float,
+    *,
+    both_ways: bool = False,
+    larger: bool = False,
+    largest: float = np.inf,
+    finer: int = 1,
+) -> tuple[FloatArray, FloatArray]:
     """Return sizes within ``REACH`` spreads of ln size about a middle, and equal ln weights.
 
     Only the order of magnitude of a size is known. A uniform prior of ln size favours no cause whose usual
     size happens to explain a change (Jeffreys 1961, section 3.1).
+
+    Parameters
+    ----------
+    larger : whether some are beyond, up to twice as far
+    largest : no size reaches it
+    finer : how many times as many, where a direction is known better than a model's
     """
     reach = REACH * spread
-    sizes = middle * np.exp(np.linspace(-reach, reach, 2 * int(np.ceil(reach / _STEP)) + 1))
-    sizes = np.concatenate([-sizes, sizes]) if both_ways else sizes
-    return sizes, np.full(sizes.size, -np.log(sizes.size))
+    n = finer * int(np.ceil(reach / _STEP))
+    beyond = reach * (1.0 + np.arange(2, n + 1, 2) / n) if larger else np.zeros(0)
+    sizes = middle * np.exp(np.concatenate([np.linspace(-reach, reach, 2 * n + 1), beyond]))
+    share = np.array([1.0 - _LARGER, _LARGER]) / [2 * n + 1, max(n // 2, 1)]
+    weights = np.repeat(share, [2 * n + 1, beyond.size])
+    sizes, weights = sizes[sizes < largest], weights[sizes < largest]
+    if both_ways:
+        sizes, weights = np.concatenate([-sizes, sizes]), np.tile(weights, 2)
+    return sizes, np.log(weights / weights.sum())
 
 
 def general_causes(
