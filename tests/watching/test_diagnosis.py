@@ -18,6 +18,7 @@ from jackettwin.watching.diagnosis import (
     _loudness,
     _misfit,
     _moved,
+    _of_two,
     diagnose,
     explained_share,
 )
@@ -123,6 +124,74 @@ def test_no_cause_is_favoured_for_its_usual_size() -> None:
     for change in (-1e-3, -4e-3):
         one, other = (_judge([(0.0, changed(info, info[0] * change))], cause, kinds)[0] for cause in causes)
         assert abs(one - other) < 0.1
+
+
+def test_a_size_beyond_the_usual_ones_is_unlikely_and_not_impossible() -> None:
+    """A clock that runs 3 % wrong, as at 100 Hz for 97, was something else with certainty."""
+    (sizes, weights), kinds = (
+        sizes_about(1e-3, 1.2, both_ways=True, larger=True, finer=5), ("frequency",) * 4
+    )  # fmt: skip
+    far = np.abs(sizes) > 1e-3 * np.exp(2.4)
+    assert np.exp(weights).sum() == pytest.approx(1.0) and np.exp(weights[far]).sum() == pytest.approx(0.05)
+    clock = Cause("clock", np.ones((1, 4)), sizes, weights, misfit=0.0)
+    middle = 1e-3 * np.exp(4.8 * (0.5 / 0.95 - 0.5))  # half of all are below
+    assert clock.usual == pytest.approx(middle, rel=0.01)
+    assert sizes_about(0.1, 0.8, larger=True, largest=1.0)[0].max() < 1.0
+    change = changed(np.eye(4) / 3e-4**2, np.full(4, 0.03 / 3e-4**2))
+    first = diagnose(change, (clock,), kinds).verdicts[0]
+    assert first.cause == "clock" and first.probability > 0.9 and abs(first.size / 0.03 - 1.0) < 0.05
+
+
+def test_two_causes_together_have_the_density_of_their_sum(rng: np.random.Generator) -> None:
+    """X is N(θJ + μ, A⁻¹ + θ²RRᵀ + C) of a first of every other size θ and a second that is N(μ, C)."""
+    info, score, one = case(rng)
+    one = replace(one, log_size_weights=np.log([0.2, 0.3, 0.5]))
+    other = replace(one, name="other", draws=rng.standard_normal((4, 3)), prior=3.0)
+    second = [
+        (size, share, size * other.draws.mean(axis=0))
+        for size, share in zip(one.sizes, (0.2, 0.3, 0.5), strict=True)
+    ]
+    noise, x = np.linalg.inv(info), np.linalg.solve(info, score)
+
+    def missed(cause: Cause, size: float, times: float = 1.0) -> np.ndarray:
+        return size**2 * _misfit(cause, KINDS, times) @ _misfit(cause, KINDS, times).T
+
+    def density(size: float, times: float, mu: np.ndarray, spread: np.ndarray) -> float:
+        wide = noise + missed(one, size, times) + spread
+        return float(multivariate_normal(size * one.draws.mean(axis=0) + mu, wide).pdf(x))
+
+    firsts = [(size, share * w, t) for size, w, _ in second[::2] for t, share in TAIL.items()]
+    alone = sum(w * density(size, t, np.zeros(3), np.zeros((3, 3))) for size, w, t in firsts)
+    both = sum(
+        w * share * density(size, t, mu, missed(other, of))
+        for size, w, t in firsts
+        for of, share, mu in second
+    )  # fmt: skip
+    found = _of_two(changed(info, score), (one, other), np.array([2.0, 1.0]), KINDS)
+    assert found.keys() == {"any and other"}
+    expected = 2.0 + np.log(0.02 * 3.0 / 4.0) + np.log(both / alone)
+    assert found["any and other"] == pytest.approx(expected, rel=1e-6)  # the ridge is 1e-9
+
+
+def test_two_changes_at_once_are_told_where_one_does_not_explain_all() -> None:
+    def cause(name: str, *effect: float) -> Cause:
+        return Cause(name, np.array([effect]), *sizes_about(1.0, 0.8), misfit=0.02)
+
+    a, b, c = (
+        cause("a", -0.003, -0.003, 0.0, 0.0), cause("b", 0.0, 0.0, -0.002, -0.004),
+        cause("c", 0.0, -0.003, -0.003, 0.0),
+    )  # fmt: skip
+
+    def told(size_b: float, *alone: str) -> str:
+        seen = a.steps(np.ones(1))[0] + size_b * b.steps(np.ones(1))[0]
+        change = changed(np.eye(4) / 2e-4**2, seen / 2e-4**2)
+        first = diagnose(change, (a, b, c), ("frequency",) * 4, alone).verdicts[0]
+        assert first.probability > 0.8
+        return first.cause
+
+    assert told(0.0) == "a"
+    assert {*told(2.0).split(" and ")} == {"a", "b"}
+    assert told(-2.0) == told(2.0, "b") == "something else"  # b acts in one sense only
 
 
 def test_the_mean_of_louder_noise_lies_further_off(rng: np.random.Generator) -> None:

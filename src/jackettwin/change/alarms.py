@@ -65,7 +65,9 @@ def explained_alarm(
         causes = seen.causes
     causes = (*causes, *known_causes(known, chosen))
     own = [kind for kind, good in zip(kinds, chosen, strict=True) if good]
-    found = diagnose(change.restricted(chosen), causes, own)
+    # patterns over modes are no causes of which two could be told
+    alone = known if seen is not None else {cause.name for cause in causes}
+    found = diagnose(change.restricted(chosen), causes, own, alone)
     # what a change is to an earlier one is no alternative to the causes of either
     groups = (tuple(name for name in group if name not in known) for group in found.inseparable)
     found = replace(found, inseparable=tuple(group for group in groups if len(group) > 1))

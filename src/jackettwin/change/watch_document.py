@@ -11,12 +11,10 @@ import numpy as np
 
 from jackettwin.change.alarms import Alarm, likeliest_of
 from jackettwin.intervals import NORMAL_90
-from jackettwin.watching import CLEAR, CauseVerdict, Watch
+from jackettwin.watching import CLEAR, UNEXPLAINED, CauseVerdict, Watch
 
 _TURNED = 3.0
 """Odds at which another cause corrects the one that was named: substantial evidence (Jeffreys 1961)."""
-_EXPLAINED = 0.02
-"""Probability of a deviation from a cause's effect below which the cause is said not to explain all."""
 _NAMED, _LIKELY = 3, 0.001
 """Number of causes in a sentence if none is clear, and the smallest probability of a listed cause."""
 
@@ -177,7 +175,7 @@ def likeliest(alarm: Mapping[str, Any]) -> str:
     """Return the likeliest cause of an alarm's document in words, or the first few if none is clear."""
     now, explained = alarm["verdicts"][-1], alarm.get("explained")
     if now["probability"] >= CLEAR:
-        all_of_it = explained is None or explained >= _EXPLAINED
+        all_of_it = explained is None or explained >= UNEXPLAINED
         beyond = "" if all_of_it else ", which does not explain all of it: perhaps more than one change"
         return f"most likely {verdict_words(now)}{beyond}"
     named = [f"{one['cause']} ({100.0 * one['probability']:.0f} %)" for one in alarm["causes"][:_NAMED]]

@@ -18,6 +18,7 @@ from .design import (
 from .detectable import CHANCE as CHANCE, Sight as Sight, sight as sight
 from .diagnosis import (
     CLEAR as CLEAR,
+    UNEXPLAINED as UNEXPLAINED,
     CauseVerdict as CauseVerdict,
     Diagnosis as Diagnosis,
     diagnose as diagnose,

@@ -12,7 +12,7 @@ information that their values are expected to give on the cause.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,6 +30,13 @@ INSEPARABLE = 2.0
 CLEAR = 0.5
 """Probability of a cause from which it is at least as likely as all others together."""
 _OTHER_PRIOR = 1.0
+UNEXPLAINED = 0.02
+"""Probability of a deviation from a cause's effect below which that cause does not explain all."""
+_SECOND, _FIRSTS = 0.02, 3
+"""Probability that another change began with a first one, and number of likeliest causes that are tried as
+the first: changes are decades apart, but a storm or works at sea may do two things."""
+_ORDER, _FAR = 1.0, 1e3
+"""Range of ln size taken for one order of magnitude, and a number beyond any such order."""
 TAIL = {1.0: 0.68, 3.0: 0.22, 9.0: 0.1}
 """Errors of a model's directions, as multiples of the usual error, and their probabilities. Of some five
 hundred directions compared, 68 % were within the usual error and 90 % within three times it
@@ -68,7 +75,7 @@ class Diagnosis:
     verdicts : causes in order of probability, including "something else"
     inseparable : groups of likely causes that these quantities do not distinguish
     explained : probability of a change that differs at least as much from what the likeliest cause does; NaN
-        for a cause without a size
+        for a cause without a size and for two together
     """
 
     verdicts: tuple[CauseVerdict, ...]
@@ -76,30 +83,106 @@ class Diagnosis:
     explained: float = float("nan")
 
 
-def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> Diagnosis:
+def diagnose(
+    change: Change, causes: Sequence[Cause], kinds: Sequence[str], alone: Collection[str] = ()
+) -> Diagnosis:
     """Return the probabilities of causes after a change.
 
     Parameters
     ----------
     kinds : (m,) kind of each quantity
+    alone : names of causes that are not tried together with another
     """
     sensor = next((cause for cause in causes if cause.louder.size), None)
     states = [(0.0, change), *([] if sensor is None else _in_noise(change, sensor))]
     judged = [_judge(states, cause, kinds) for cause in causes]
-    priors = np.log([cause.prior for cause in causes] + [_OTHER_PRIOR])
     other = np.logaddexp.reduce([weight + _something(known, kinds) for weight, known in states])
-    evidence = np.array([found[0] for found in judged] + [float(other)]) + priors
-    probability = np.exp(evidence - np.logaddexp.reduce(evidence))
-    verdicts = [
-        CauseVerdict(cause.name, float(p), *found[1:], cause.unit, cause.alike)
-        for cause, p, found in zip(causes, probability, judged, strict=False)
-    ]
-    verdicts.append(CauseVerdict(SOMETHING_ELSE, float(probability[-1]), np.nan, (np.nan, np.nan), "-"))
+    priors = np.log([cause.prior for cause in causes] + [_OTHER_PRIOR])
+    evidence = np.array([*(found[0] for found in judged), float(other)]) + priors
+    sized = [k for k in np.argsort(-evidence) if k < len(causes) and not causes[k].louder.size]
+    noisy = max(states, key=lambda state: state[0])[1]
+    explained = explained_share(noisy, causes[sized[0]], kinds) if sized else float("nan")
+    two: dict[str, float] = {}
+    if explained < UNEXPLAINED or evidence.argmax() == len(causes):
+        free = [k for k in sized if causes[k].name not in alone]
+        two = _of_two(noisy, [causes[k] for k in free], evidence[free], kinds)
+    evidence = np.append(evidence, [*two.values()])
+    probability = np.exp(evidence - np.logaddexp.reduce(evidence)).tolist()
+    told = [(c.name, *found[1:], c.unit, c.alike) for c, found in zip(causes, judged, strict=True)]
+    told += [(name, np.nan, (np.nan, np.nan), "-", ()) for name in (SOMETHING_ELSE, *two)]
+    verdicts = [CauseVerdict(one[0], p, *one[1:]) for one, p in zip(told, probability, strict=True)]
     ordered = tuple(sorted(verdicts, key=lambda v: -v.probability))
     likely = [c for c, p in zip(causes, probability, strict=False) if p > 0.02]
-    first = next((c for c in causes if c.name == ordered[0].cause and not c.louder.size), None)
-    explained = float("nan") if first is None else explained_share(change, first, kinds)
+    if not sized or ordered[0].cause != causes[sized[0]].name:
+        explained = float("nan")
     return Diagnosis(ordered, _groups(change, likely, {v.cause: v for v in ordered}, kinds), explained)
+
+
+def _of_two(
+    change: Change, causes: Sequence[Cause], evidence: FloatArray, kinds: Sequence[str]
+) -> dict[str, float]:
+    r"""Return ln of the evidence of two causes together by their names, each pair once.
+
+    With X = A⁻¹b of the likeliest onset, a size θ of the first, and the effect of the second normal with
+    mean μ and covariance C over its sizes of one order of magnitude and its directions, X is
+
+    .. math:: N(θJ + μ, A^{-1} + θ^2 RR^T + C)
+
+    The evidence of the first alone is multiplied by the ratio of the mean of these densities to that without
+    a second.
+
+    Parameters
+    ----------
+    causes, evidence : with a size, the likeliest first, and ln of their evidence and prior
+    """
+    best = _best(change)
+    noise = _inverse(change.info[best : best + 1])[0]
+    seen = noise @ change.score[best]
+    share = [_SECOND * cause.prior / sum(one.prior for one in causes) for cause in causes]
+    seconds = [_as_normals(cause, kinds) for cause in causes]
+    found: dict[str, float] = {}
+    for i, first in enumerate(causes[:_FIRSTS]):
+        # every other size still finds one as well known as a direction
+        sizes, logs, alone = first.sizes[::2], first.log_size_weights[::2], list[float]()
+        off = seen - first.steps(sizes)
+        both: list[list[float]] = [[] for _ in causes]
+        for times, weight in TAIL.items():
+            root = _misfit(first, kinds, times)
+            wide = noise + sizes[:, None, None] ** 2 * (root @ root.T)
+            prior = logs + np.log(weight)
+            alone.append(float(np.logaddexp.reduce(prior + _log_density(off, wide))))
+            for k, of_order in enumerate(seconds):
+                for ln_share, mean, spread in of_order:
+                    own = prior + ln_share + _log_density(off - mean, wide + spread)
+                    both[k].append(float(np.logaddexp.reduce(own)))
+        for k, second in enumerate(causes):
+            if k > i or k >= _FIRSTS:
+                more = np.logaddexp.reduce(both[k]) - np.logaddexp.reduce(alone)
+                found[f"{first.name} and {second.name}"] = float(evidence[i] + np.log(share[k]) + more)
+    return found
+
+
+def _as_normals(cause: Cause, kinds: Sequence[str]) -> list[tuple[float, FloatArray, FloatArray]]:
+    """Return a cause's effect as normals: ln of the weight, mean (m,) and covariance (m, m) of each.
+
+    Each is of the sizes of one sign and order of magnitude, of which uniform ones are nearly normal.
+    """
+    found, root = [], _misfit(cause, kinds)
+    order = np.sign(cause.sizes) * (_FAR + np.floor(np.log(np.abs(cause.sizes)) / _ORDER))
+    for one in np.unique(order):
+        sizes, logs = cause.sizes[order == one], cause.log_size_weights[order == one]
+        ln_share = np.logaddexp.reduce(logs)
+        weight, steps = np.exp(logs - ln_share), cause.steps(sizes)
+        mean = weight @ steps
+        spread = (weight[:, None] * (steps - mean)).T @ (steps - mean)
+        found.append((float(ln_share), mean, spread + (weight @ sizes**2) * (root @ root.T)))
+    return found
+
+
+def _log_density(off: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Return ln of the normal density of deviations (n, m) with covariances (n, m, m), but for a constant."""
+    square = np.einsum("si,si->s", off, np.linalg.solve(covariance, off[..., None])[..., 0])
+    return np.asarray(-0.5 * (square + np.linalg.slogdet(covariance)[1]))
 
 
 def explained_share(change: Change, cause: Cause, kinds: Sequence[str]) -> float:
