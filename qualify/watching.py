@@ -5,7 +5,8 @@ Usage: python qualify/watching.py [page] [quiet turbines a kind of seasons] [tur
        python qualify/watching.py speed
        python qualify/watching.py kinds [turbines a kind of seasons] [folder of pieces]
        python qualify/watching.py scours [turbines a kind of seasons] [folder of pieces]
-       python qualify/watching.py short [turbines a kind of seasons] [folder of pieces]
+       python qualify/watching.py short [turbines a kind of seasons] [with scour] [folder of pieces]
+       python qualify/watching.py faults [turbines a fault] [folder of pieces]
        python qualify/watching.py right [turbines]
        python qualify/watching.py smallest [turbines a kind of seasons] [folder of pieces] [--model]
 
@@ -83,7 +84,7 @@ TOLD = (
 SHORT_DAYS, SHORT_RECORDS = 200.0, 6.0
 """A baseline of a part of a year, and records a cluster beside it."""
 QUIET_SEEDS, CHANGE_SEEDS, UNTOLD_SEEDS, SCOUR_SEEDS, SMALLEST_SEEDS = 20_000, 30_000, 40_000, 60_000, 80_000
-SHORT_SEEDS = 200_000
+SHORT_SEEDS, FAULT_SEEDS = 200_000, 220_000
 """Where the seeds of turbines begin; those below were used for development."""
 NAMING = "causes.py", "diagnosis.py", "next_look.py"
 """Of ``watching``: what only says which cause it was."""
@@ -193,6 +194,90 @@ def short(pieces: dict[str, Any]) -> list[str]:
     lines += _counted("**all**", _of(pieces, "short/quiet/"))
     table = scours({name.removeprefix("short/"): value for name, value in pieces.items()})
     return [*lines, "", *table[2:]]
+
+
+# conditions at fault
+
+
+def _with_gaps(h: History, rng: np.random.Generator) -> tuple[History, float]:
+    """Return 40 to 70 % of the days, in blocks, and any day after the baseline."""
+    share, off = rng.uniform(0.3, 0.6), rng.uniform(4.0, 15.0)
+    there, day = np.ones(int(h.days[-1]) + 2, dtype=bool), 0
+    while day < there.size:
+        day += 1 + int(rng.geometric(min(share / (off * (1.0 - share)), 1.0)))
+        gap = int(rng.geometric(1.0 / off))
+        there[day : day + gap] = False
+        day += gap
+    return h.rows(there[np.floor(h.days).astype(int)]), BASELINE + rng.uniform(20.0, 200.0)
+
+
+def _with_still_wind(h: History, rng: np.random.Generator) -> tuple[History, float]:
+    """Return the records with a wind that stays as it is for 60 to 150 days, and a day in its first month."""
+    begins = BASELINE + rng.uniform(10.0, 300.0)
+    place, conditions = h.condition_names.index("wind_speed_m_s"), h.conditions.copy()
+    still = (h.days >= begins) & (h.days < begins + rng.uniform(60.0, 150.0))
+    conditions[still, place] = conditions[np.argmax(still), place]
+    return replace(h, conditions=conditions), begins + rng.uniform(5.0, 30.0)
+
+
+def _without_waves(h: History, rng: np.random.Generator) -> tuple[History, float]:
+    kept = [name != "hs_m" for name in h.condition_names]
+    names = tuple(name for name, k in zip(h.condition_names, kept, strict=True) if k)
+    return _with_still_wind(replace(h, conditions=h.conditions[:, kept], condition_names=names), rng)
+
+
+FAULTS: dict[str, Callable[[History, np.random.Generator], tuple[History, float]]] = {
+    "gaps of 30 to 60 % of the days": _with_gaps,
+    "wind stands still for months": _with_still_wind,
+    "the same, waves not measured": _without_waves,
+}
+"""What is wrong with the records, and when scour comes."""
+FAULT_KINDS = "as described above", "heavy noise, twice in storms; squares", "storms that heal"
+
+
+def _at_fault(fault: str, seed: int, *, scoured: bool) -> tuple[History, float]:
+    place, kind = list(FAULTS).index(fault), FAULT_KINDS[seed % len(FAULT_KINDS)]
+    some = replace(KINDS[kind], records_a_cluster=SHORT_RECORDS)
+    s = seasons(FAULT_SEEDS + 100 * place + seed, YEARS * 365.0, some)
+    _, begun = FAULTS[fault](history(s), np.random.default_rng((14, place, seed)))
+    rng = np.random.default_rng((14, place, seed))
+    return FAULTS[fault](history(PLANTED[0].apply(s, begun, rng) if scoured else s), rng)[0], begun
+
+
+def quiet_at_fault(fault: str, seed: int) -> dict[str, Any]:
+    """Return whether and after how many years a watch on a quiet turbine gives an alarm, by its ARL."""
+    h, _ = _at_fault(fault, seed, scoured=False)
+    baseline, out = h.between(0.0, BASELINE), {}
+    before = learnt(baseline, ARLS[0], patterns())
+    for arl in ARLS:
+        _, looks = watched(h, calibrated(replace(before, arl_years=arl), baseline))
+        out[f"{arl:g}"] = [looks[-1].change is not None, (looks[-1].day - BASELINE) / 365.25]
+    return out
+
+
+def scour_at_fault(fault: str, seed: int) -> float | None:
+    """Return after how many days scour is found; negative if before it came."""
+    h, begun = _at_fault(fault, seed, scoured=True)
+    _, looks = watched(h, begun_watch(h, 10.0), begun + 365.0)
+    return None if looks[-1].change is None else looks[-1].day - begun
+
+
+def faults(pieces: dict[str, Any]) -> list[str]:
+    """Return the section on gaps and a wind that stands still."""
+    lines = [
+        "## Gaps, and a wind sensor that stands still",
+        "",
+        f"A year of baseline, two years watched; in turn seasons {', '.join(FAULT_KINDS)}.",
+        "",
+        "| records | ARL [years] | alarms | years watched | promised | ratio | chance |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for fault in FAULTS:
+        lines += _counted(fault, _of(pieces, f"quiet/{fault}/"))
+    lines += ["", "| records | scour found | median delay [d] | alarms before |", "|---|---|---|---|"]
+    for fault in FAULTS:
+        lines.append(_found_in(fault, _of(pieces, f"scour/{fault}/")))
+    return [*lines, ""]
 
 
 def untold(h: History) -> History:
@@ -337,11 +422,15 @@ def scours(pieces: dict[str, Any]) -> list[str]:
         "|---|---|---|---|",
     ]
     for kind, delays in [*every.items(), ("**all**", [d for each in every.values() for d in each])]:
-        early = sum(d is not None and d < 0.0 for d in delays)
-        found = [d for d in delays if d is not None and d >= 0.0]
-        median = f"{np.median(found):.0f}" if found else "–"
-        lines.append(f"| {kind} | {len(found)} of {len(delays) - early} | {median} | {early} |")
+        lines.append(_found_in(kind, delays))
     return [*lines, ""]
+
+
+def _found_in(name: str, delays: list[float | None]) -> str:
+    early = sum(d is not None and d < 0.0 for d in delays)
+    found = [d for d in delays if d is not None and d >= 0.0]
+    median = f"{np.median(found):.0f}" if found else "–"
+    return f"| {name} | {len(found)} of {len(delays) - early} | {median} | {early} |"
 
 
 def _of(pieces: dict[str, Any], start: str) -> list[Any]:
@@ -841,7 +930,8 @@ def given() -> argparse.Namespace:
         "page": (15, 20, 7),
         "speed": (),
         "kinds": (3,),
-        "short": (3,),
+        "short": (3, 2),
+        "faults": (6,),
         "scours": (4,),
         "right": (24,),
         "smallest": (3,),
@@ -883,15 +973,24 @@ def main() -> None:
         return
     if asked.what == "short":
         named = [
-            piece
-            for seed in range(number)
-            for kind in KINDS
-            for piece in (
-                (f"short/quiet/{kind}/{seed}", lambda k=kind, s=seed: quiet_after_part_of_a_year(k, s)),
-                (f"short/scour/{kind}/{seed}", lambda k=kind, s=seed: scour_after_part_of_a_year(k, s)),
+            (f"short/{what}/{kind}/{seed}", lambda w=of, k=kind, s=seed: w(k, s))
+            for what, of, turbines in (
+                ("quiet", quiet_after_part_of_a_year, number),
+                ("scour", scour_after_part_of_a_year, asked.turbines_1),
             )
+            for seed in range(turbines)
+            for kind in KINDS
         ]
         sys.stdout.write("\n".join(short(computed(named, asked.folder))))
+        return
+    if asked.what == "faults":
+        named = [
+            (f"{what}/{fault}/{seed}", lambda w=of, f=fault, s=seed: w(f, s))
+            for seed in range(number)
+            for fault in FAULTS
+            for what, of in (("quiet", quiet_at_fault), ("scour", scour_at_fault))
+        ]
+        sys.stdout.write("\n".join(faults(computed(named, asked.folder))))
         return
     if asked.what in ("kinds", "scours"):
         every = asked.what == "kinds"

@@ -1,6 +1,7 @@
 """Averages by the hour, and what is set aside."""
 
 import numpy as np
+import pytest
 
 from jackettwin.watching.hours import DOUBTED, NEIGHBOURS, by_hour, outliers
 
@@ -35,13 +36,17 @@ def test_a_value_apart_is_set_aside_and_a_step_is_not(rng: np.random.Generator) 
     assert np.array_equal(shifted, apart)
 
 
-def test_two_outliers_of_four_values_are_set_aside_alone(rng: np.random.Generator) -> None:
-    """The middle of the four lay between both pairs, so that all were rejected and counted as loud noise."""
-    tail, today = rng.standard_normal((NEIGHBOURS, 1)), rng.standard_normal((4, 1))
-    today[[1, 2], 0] -= [15.0, 21.0]
-    apart, *_ = outliers(today, np.ones((4, 1)), tail)
+@pytest.mark.parametrize("number", [3, 4])
+def test_two_outliers_of_a_few_values_are_set_aside_alone(number: int, rng: np.random.Generator) -> None:
+    """The middle of four lay between both pairs: all were rejected, as loud noise.
+
+    Of three it was an outlier, and the good value was rejected: an alarm with 26 nats.
+    """
+    tail, today = rng.standard_normal((NEIGHBOURS, 1)), rng.standard_normal((number, 1))
+    today[[1, 2], 0] -= [15.0, 17.0]
+    apart, *_ = outliers(today, np.ones((number, 1)), tail)
     assert np.flatnonzero(apart[:, 0]).tolist() == [1, 2]
-    shifted, *_ = outliers(rng.standard_normal((4, 1)) - 15.0, np.ones((4, 1)), tail)
+    shifted, *_ = outliers(rng.standard_normal((number, 1)) - 15.0, np.ones((number, 1)), tail)
     assert not shifted.any()
 
 

@@ -22,7 +22,8 @@ NEIGHBOURS = 9
 ENOUGH = 3
 """Fewest values of a day that are compared with each other. Fewer values are compared with earlier days.
 Since a step is distant from these too, a rejection then does not count as scatter, and after five values the
-neighbours are replaced. So are values of which half would be rejected, as of two outliers of four."""
+neighbours are replaced. So are values of which half would be rejected, as of two outliers of four, and three
+of which one would be: the two that agree may be outliers."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,9 @@ def outliers(
         distance = np.zeros(seen.size)
         if seen.size >= ENOUGH:
             distance = np.abs(today - _running_median(today)) / std
-        if seen.size < ENOUGH or 2 * np.sum(distance > OUTLIER) >= seen.size:  # the middle itself is in doubt
+        far = int(np.sum(distance > OUTLIER))
+        # the middle itself is in doubt: of three values, the two that agree may be the outliers
+        if seen.size < ENOUGH or 2 * far >= seen.size or (far and seen.size == ENOUGH):
             around = np.concatenate([before, today])
             if around.size >= ENOUGH:
                 distance = np.abs(today - _running_median(around)[-seen.size :]) / std
