@@ -1,13 +1,11 @@
 import { describe, expect, test } from "vitest";
-import { binPlot } from "../src/parts/modes";
-import { csvOf, extentOf, type PlotData, spanOf, ticksOf, timeTicksOf } from "../src/parts/plot/series";
+import { alarmMarks, binPlot } from "../src/parts/modes";
+import { csvOf, extentOf, type PlotData, spanOf, ticksOf, timeTicksOf, wordsOf } from "../src/parts/plot/series";
 import { svgOf } from "../src/parts/plot/svg";
 import { stiffnessPlot } from "../src/parts/ground";
 
 const plot: PlotData = {
   title: 'side-side "1" <b>',
-  time: true,
-  xName: "UTC",
   yName: "frequency [Hz]",
   series: [
     { name: "a, b", colour: "blue", kind: "points", x: [0, 60], y: [1, null], low: [0.5, null], high: [2, null] },
@@ -22,6 +20,18 @@ describe("a plot", () => {
       '"a, b",1970-01-01T00:00:00.000Z,1,0.5,2',
       '"a, b",1970-01-01T00:01:00.000Z,,,',
     ]);
+  });
+  test("has the words of its marks whole and beside one another", () => {
+    const marks = [90, 5, 12, 50, 99].map((x) => ({ x, words: "w".repeat(x === 50 ? 80 : 20), colour: "alarm" }));
+    const found = wordsOf(marks, (x) => x, (words) => words.length, [0, 100]); // prettier-ignore
+    expect(found.map(({ x, at, line }) => [x, at, line])).toEqual([
+      [5, 5, 0],
+      [12, 12, 1],
+      [50, 0, 2], // there is no room on either side: it begins where the plot does
+      [90, 70, 0],
+      [99, 79, 1],
+    ]);
+    expect(wordsOf(marks, (x) => x - 60, () => 10, [0, 100]).map((one) => one.x)).toEqual([90, 99]); // prettier-ignore
   });
   test("shows its intervals whole", () => {
     const [low, high] = spanOf(plot, null);
@@ -88,7 +98,7 @@ describe("a plot", () => {
   });
   test("has true minus signs at its axes", () => {
     const below = [{ name: "a", colour: "blue", kind: "line" as const, x: [-3, 3], y: [-2, 2] }];
-    const drawn = svgOf({ ...plot, time: false, marks: [], series: below }, [-3, 3], () => "#123456");
+    const drawn = svgOf({ ...plot, xName: "frequency [Hz]", marks: [], series: below }, [-3, 3], () => "#123456");
     expect(drawn).toContain(">−1</text>");
     expect(drawn).toContain(">−2</text>");
     expect(drawn).not.toMatch(/>-\d/);
@@ -173,4 +183,10 @@ describe("the ground's stiffness", () => {
       ["version 3", [0.8]],
     ]);
   });
+});
+
+test("an alarm is marked from the day that the change began to the one on which it was found", () => {
+  const found = { time_utc: "2025-04-28T00:00:00Z", params: { began: "2025-04-15" } } as never;
+  const [{ x = 0, to = 0, words = "" } = {}] = alarmMarks([found]);
+  expect([(to - x) / 86_400, words]).toEqual([13, "began 2025-04-15, alarm 2025-04-28"]);
 });

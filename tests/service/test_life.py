@@ -55,6 +55,9 @@ def test_the_damage_of_a_real_record_is_answered(
     }
     # samples are stored to a ten-thousandth of their steps
     assert [r["rate_per_year"] for r in told] == pytest.approx([r["rate_per_year"] for r in direct], rel=0.1)
+    short, first = client.get("/api/v1/assets/pile").json(), told[0]["remaining_years"]
+    assert short["remaining_years"] == first["p50"]
+    assert short["remaining_years_interval_90"] == [first["p05"], first["p95"]]
     for row in told:
         low, high = row["damage_interval_90"]
         assert low < high and sum(row["variance_shares"].values()) == pytest.approx(1.0, abs=1e-5)

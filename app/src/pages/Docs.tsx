@@ -3,48 +3,31 @@ import { useAnswer } from "../api/answer";
 import { Problem } from "../api/client";
 import { Card, Find, Head } from "../parts/Bits";
 import { Shown } from "../parts/Shown";
+import { type Column, Table } from "../parts/Table";
 import { asked } from "../shell/place";
 
 type Parameter = { name: string; in: string; required?: boolean; description?: string };
-type Said = { tags?: string[]; description?: string; summary?: string; parameters?: Parameter[] };
-type Operation = Said & { requestBody?: { content: object }; responses: object };
+type Said = { tags?: string[]; description?: string; parameters?: Parameter[] };
+type Operation = Said & { requestBody?: { content: object } };
 type Described = { info: { title: string; version: string }; paths: Record<string, Record<string, Operation>> };
 type Row = Operation & { method: string; path: string };
-const tagOf = (row: Row): string => row.tags?.[0] ?? "other";
+const said = ({ name, required, description }: Parameter): string =>
+  name + (required ? " (must be given)" : "") + (description ? ` – ${description}` : "");
+const asks = ({ parameters = [], requestBody }: Row): string =>
+  [...parameters.filter((p) => p.in === "query").map(said), ...Object.keys(requestBody?.content ?? {})].join(" · ");
 
 async function read(): Promise<Described> {
   const answer = await fetch("/api/v1/openapi.json").catch(() => null);
-  if (!answer?.ok) throw new Problem("offline", "The document does not come.");
-  return (await answer.json()) as Described;
+  if (answer?.ok) return (await answer.json()) as Described;
+  throw new Problem("offline", "The document does not come.");
 }
 
-function Call({ row }: { row: Row }) {
-  const asks = (row.parameters ?? []).filter((p) => p.in === "query");
-  const refused = Object.keys(row.responses).filter((status) => status >= "400");
-  return (
-    <li>
-      <code>
-        <b>{row.method.toUpperCase()}</b> {row.path}
-      </code>
-      <p>{(row.description ?? row.summary ?? "").replaceAll("``", "")}</p>
-      {asks.length > 0 && (
-        <p class="quiet">
-          {asks.map((p, i) => (
-            <span key={p.name}>
-              {i > 0 && " · "}
-              <code>{p.name}</code>
-              {`${p.required ? " (must be given)" : ""}${p.description ? ` – ${p.description}` : ""}`}
-            </span>
-          ))}
-        </p>
-      )}
-      <p class="quiet">
-        {row.requestBody && `Sent: ${Object.keys(row.requestBody.content).join(", ")}. `}
-        {refused.length > 0 && `May answer ${refused.join(", ")} with a problem document.`}
-      </p>
-    </li>
-  );
-}
+const COLUMNS: Column<Row>[] = [
+  { title: "Of", show: (r) => r.tags?.[0], by: (r) => r.tags?.[0] ?? "" },
+  { title: "Call", show: (r) => <code>{`${r.method.toUpperCase()} ${r.path}`}</code> },
+  { title: "What it does", show: (r) => <span class="prose">{r.description?.replaceAll("``", "")}</span> },
+  { title: "What may be asked", show: (r) => <span class="prose">{asks(r)}</span> },
+];
 
 export default function Docs() {
   const found = useAnswer(null, "docs", read);
@@ -64,8 +47,6 @@ export default function Docs() {
           const rows: Row[] = Object.entries(data.paths)
             .flatMap(([path, of]) => Object.entries(of).map(([method, one]) => ({ ...one, method, path })))
             .filter((r) => `${r.path} ${r.description ?? ""}`.toLowerCase().includes(text));
-          const byTag = new Map<string, Row[]>();
-          for (const row of rows) byTag.set(tagOf(row), [...(byTag.get(tagOf(row)) ?? []), row]);
           return (
             <>
               <div class="tools">
@@ -74,17 +55,9 @@ export default function Docs() {
                   {data.info.title} {data.info.version}, {rows.length} calls
                 </span>
               </div>
-              <div class="grid">
-                {[...byTag].map(([tag, own]) => (
-                  <Card key={tag} title={tag} wide>
-                    <ul class="list">
-                      {own.map((r) => (
-                        <Call key={r.method + r.path} row={r} />
-                      ))}
-                    </ul>
-                  </Card>
-                ))}
-              </div>
+              <Card title="Calls" wide>
+                <Table label="Calls" rows={rows} id={(r) => r.method + r.path} columns={COLUMNS} />
+              </Card>
             </>
           );
         }}

@@ -8,7 +8,7 @@ import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Series } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
 import { Laws } from "../parts/Laws";
-import { Heat } from "../parts/Heat";
+import { extremes, Heat } from "../parts/Heat";
 import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
 import { keep, useChosen } from "../shell/place";
@@ -32,7 +32,6 @@ const ends = (v: readonly number[]): [number, number] => [Math.log10(v[0] ?? 1),
 function along(locus: Locus, name: string, title: string, yName: string, of: OfBranch): PlotData {
   return {
     title,
-    time: false,
     xName: `${name} [${locus.unit}]`,
     yName,
     logX: true,
@@ -64,7 +63,6 @@ function poles(locus: Locus, index: number): PlotData {
   const now = locus.branches.filter((b) => lively(b, index)).map((b): At => [b, index]);
   return {
     title: "Root locus",
-    time: false,
     xName: "real part [rad/s]",
     yName: "imaginary part of the poles [rad/s]",
     series: [...series, { ...dots("here", "ink", now), names: now.map(([b]) => words(b.label)) }],
@@ -96,7 +94,7 @@ function Along({ locus, name, many }: { locus: Locus; name: string; many: boolea
         note={`${many ? "Every direction's moves by the same factor" : "One parameter moves"}, the others stay where the data put them.`}
       >
         <Slide of={slider}>
-          {name} <b>{quantity(value, locus.unit, 3)}</b>
+          {name} <b>{quantity(value, locus.unit)}</b>
           {index === locus.origin ? " (median)" : ` (${quantity(value / median, "", 3)} × the median)`}
         </Slide>
         <div class="pair">
@@ -107,7 +105,7 @@ function Along({ locus, name, many }: { locus: Locus; name: string; many: boolea
       </Card>
       <Card
         title="Modes here"
-        note={`At a ${name} of ${quantity(value, locus.unit, 3)}; at the median as in the report. Damping is that of the sources in the model, without what is unexplained.`}
+        note={`At a ${name} of ${quantity(value, locus.unit)}; at the median as in the report. Damping is that of the sources in the model, without what is unexplained.`}
       >
         <Table
           label="Frequencies and damping ratios"
@@ -117,13 +115,6 @@ function Along({ locus, name, many }: { locus: Locus; name: string; many: boolea
             { title: "Mode", show: (b) => words(b.label) },
             number<Branch>("Frequency", "Hz", (b) => b.frequency_hz[index], { say: (v) => frequency(v) }),
             number<Branch>("Damping ratio", "%", (b) => b.damping_ratio[index], { say: (v) => percent(v) }),
-            {
-              title: "Most damping",
-              unit: `% at ${name}`,
-              numeric: true,
-              show: ({ most_damped_at: at, most_damping_ratio: most }) =>
-                at == null ? "–" : `${percent(most)} at ${quantity(at, locus.unit)}`,
-            },
           ]}
         />
       </Card>
@@ -169,7 +160,6 @@ function Curves({ explored, said }: { explored: Explored; said: Name }) {
   const plot = useMemo(
     (): PlotData => ({
       title: "Cost along each parameter",
-      time: false,
       xName: "factor on the median",
       yName: "cost",
       log: true,
@@ -229,12 +219,12 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
 function Surface({ surface: { x, y, cost }, named, said }: { surface: Grid; named: Named; said: Name }) {
   const cells = useMemo(() => cost.map((row) => row.map((v) => (v ? -Math.log10(v) : null))), [cost]);
   const at = (axis: Grid["x"], v?: number): string => quantity(v, named[axis.parameter]?.unit ?? "");
-  const known = cost.flat().filter((v): v is number => v !== null && v > 0);
+  const [worst, best] = extremes(cells).map((v) => short(10 ** -v, 2));
   const [ax, ay] = [named[x.parameter]?.value, named[y.parameter]?.value];
   return (
     <Heat
       title="Cost over two parameters"
-      unit={`from ${short(Math.min(...known), 2)} (bright) to ${short(Math.max(...known), 2)} (dark)`}
+      unit={`from ${best} (bright) to ${worst} (dark)`}
       cells={cells}
       zName="-log10 of the cost"
       decades
@@ -264,7 +254,7 @@ export default function Explore({ asset }: PageProps) {
       <Shown of={found} lines={12} some={(data) => data.loci?.length} none={NOTHING}>
         {(data) => <Drawn asset={asset} explored={data} />}
       </Shown>
-      <Laws />
+      <Laws asset={asset} />
     </>
   );
 }

@@ -7,7 +7,7 @@ import { type Column, number, Table } from "../parts/Table";
 import { asked, assetUrl, keep, useChosen } from "../shell/place";
 import { SaveDrawn } from "../parts/plot/SaveMenu";
 import { mapCsv, Site } from "../parts/Site";
-import { count, sentence, years } from "../words/numbers";
+import { count, sentence, yearsWithin } from "../words/numbers";
 
 const URGENT = ["alarm", "warning", "no data", "ok"];
 const some = (asset: Asset, ...statuses: string[]): number =>
@@ -35,7 +35,9 @@ const COLUMNS: Column<Asset>[] = [
     show: (a) => (a.last_record_utc ? <Ago at={a.last_record_utc} /> : "none yet"),
     by: (a) => a.last_record_utc,
   },
-  number("Life left", "years", (a) => a.remaining_years, { say: years }),
+  number("Life left", "years, 90 %", (a) => a.remaining_years, {
+    say: (left, a) => yearsWithin(left, a.remaining_years_interval_90),
+  }),
   number("Records", "observed", (a) => some(a, "observed")),
   number("Waiting", "records", (a) => some(a, "received", "observing")),
 ];

@@ -8,7 +8,7 @@ import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
 import { assetUrl, linkWith, useChosen } from "../shell/place";
-import { count, fixed, scientific, years } from "../words/numbers";
+import { count, fixed, scientific, years, yearsWithin } from "../words/numbers";
 import { day } from "../words/time";
 
 type Weld = Schemas["LifeOut"];
@@ -34,14 +34,9 @@ const COLUMNS: Column<Weld>[] = [
   { title: "Status", show: (w) => <Light status={state(w)} />, by: state },
   { title: "Weld", show: (w) => <a href={linkWith({ weld: key(w) })}>{named(w)}</a>, by: key },
   number("Above the sea", "m", (w) => w.above_sea_m, { say: (v) => fixed(v, 1) }),
-  {
-    title: "Left",
-    unit: "years, 90 %",
-    numeric: true,
-    show: ({ remaining_years: { p05, p50, p95 } }) =>
-      years(p05) === years(p95) ? years(p50) : `${years(p50)} (${years(p05)} to ${years(p95)})`,
-    by: (w) => w.remaining_years.p50,
-  },
+  number("Left", "years, 90 %", (w) => w.remaining_years.p50 ?? Infinity, {
+    say: (left, { remaining_years: { p05, p95 } }) => yearsWithin(left, [p05, p95]),
+  }),
   number("Damage a year", "times what is allowed", (w) => w.rate_per_year / w.budget_per_year, {
     say: (v) => scientific(v, 2),
   }),
@@ -55,9 +50,14 @@ const points = ({ damage_by_point: found }: Weld): [number, number][] =>
 function Around({ weld }: { weld: Weld }) {
   const most = Math.max(...weld.damage_by_point, 1e-300);
   return (
-    <svg class="around drawn" viewBox="-60 -60 120 120" role="img" aria-label={`Damage around ${named(weld)}`}>
+    <svg class="around drawn" viewBox="-72 -64 144 128" role="img" aria-label={`Damage around ${named(weld)}`}>
       <circle r="50" />
       <circle r="25" />
+      {["0°", "90°", "180°", "270°"].map((words, i) => (
+        <text key={words} x={[0, 61, 0, -61][i]} y={[-54, 2.5, 60, 2.5][i]}>
+          {words}
+        </text>
+      ))}
       {points(weld).map(([angle, damage]) => {
         const [r, turn] = [(50 * damage) / most, (angle * Math.PI) / 180];
         const [x, y] = [r * Math.sin(turn), -r * Math.cos(turn)];
@@ -131,7 +131,7 @@ export default function Life({ asset }: PageProps) {
                   more={
                     <SaveDrawn title={named(weld)} csv={() => csvFrom([["degrees", "damage"], ...points(weld)])} />
                   }
-                  note="Damage at eight points around the weld; the worst is at the rim."
+                  note={`Damage at eight points around the weld; at the rim ${scientific(Math.max(...weld.damage_by_point), 2)}, the worst.`}
                 >
                   <One weld={weld} />
                 </Card>

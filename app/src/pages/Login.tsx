@@ -6,7 +6,7 @@ import { asked, go } from "../shell/place";
 
 /** Only a place of ours: a link from elsewhere cannot send anybody away by it. */
 export function safePlace(next: string | null): string {
-  return next && /^\/(?![/\\])/.test(next) ? next : "/";
+  return next && /^\/(?![/\\])\S*$/.test(next) ? next : "/"; // browsers leave out tabs: "/", tab, "/elsewhere"
 }
 
 export function Login() {

@@ -3,7 +3,7 @@ import { useEffect, useMemo, useState } from "preact/hooks";
 import { type Answer, useAnswer, useAsset, useRecord } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
 import { Card, Choice, Facts, Light, Time, Pick } from "../parts/Bits";
-import { Heat } from "../parts/Heat";
+import { extremes, Heat } from "../parts/Heat";
 import { paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData } from "../parts/plot/series";
@@ -55,8 +55,6 @@ function Signals({ record, onDrawn }: { record: RecordOut; onDrawn: () => void }
         const [low, high] = [bins["min"] ?? [], bins["max"] ?? []];
         return {
           title: name,
-          time: true,
-          xName: "UTC",
           yName: typeof unit === "string" ? unit : "",
           series: [{ name, colour, kind: "band", solid: true, x, y: [], low, high }],
           marks: faults.filter((f) => (f.channel ?? name) === name).map((f) => mark(f, begin)),
@@ -122,7 +120,7 @@ function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[]
     }));
     const marks: Mark[] = modes.map((m) => ({ x: m.frequency_hz, words: words(m.label), colour: "quiet" }));
     const title = what ? "Singular values" : "Spectrum";
-    return { title, time: false, xName: "frequency [Hz]", yName: first, log: true, series, marks };
+    return { title, xName: "frequency [Hz]", yName: first, log: true, series, marks };
   }, [found.data, key, what]);
   return (
     <Card
@@ -146,6 +144,7 @@ function Spectrogram({ record }: { record: RecordOut }) {
     const rows = found.data?.level_db ?? [];
     return (found.data?.frequency_hz ?? []).map((_, k) => rows.map((row) => row[k] ?? null));
   }, [found.data]);
+  const [least, most] = extremes(cells);
   return (
     <Card
       title="Spectrogram"
@@ -157,7 +156,7 @@ function Spectrogram({ record }: { record: RecordOut }) {
         {({ time_s, frequency_hz, segment_s, unit, level_db }) => (
           <Heat
             title={channel}
-            unit={`dB of ${unit}`}
+            unit={`from ${fixed(least, 0)} (dark) to ${fixed(most, 0)} (bright) dB of ${unit}`}
             cells={cells}
             zName={`level [dB of ${unit}]`}
             x={[(time_s[0] ?? 0) / 60, ((time_s.at(-1) ?? 0) + segment_s) / 60]}

@@ -10,6 +10,7 @@ import { Upload } from "../parts/Upload";
 import type { PageProps } from "../shell/place";
 import { assetUrl, keep, numberAsked, stretch, useChosen } from "../shell/place";
 import { stamp } from "../parts/plot/series";
+import { NORMAL_90, percent } from "../words/numbers";
 
 type Status = RecordOut["status"];
 const LEFT_OUT = { refused: "refused", mismatched: "mismatched", set_aside: "set aside" };
@@ -77,12 +78,15 @@ export default function Records({ asset }: PageProps) {
 }
 
 const SHOWN = 5;
+const vagueness = ({ frequency_hz: f, frequency_std_hz: std }: Mode): string =>
+  std === null ? "–" : `± ${percent((NORMAL_90 * std) / f, null, 1)}`;
 
 /** Which record is worst, and why. */
 function LeastKnown({ asset, times }: { asset: string; times: object }) {
   const found = useAsset(asset, "/modes", { ...times, order: "least_known", limit: 10 * SHOWN });
   const modes = found.data?.items ?? [];
   const rows = modes.filter((m, i) => modes.findIndex((o) => o.record_id === m.record_id) === i).slice(0, SHOWN);
+  const vague = { title: "Uncertain by", unit: "% of it, 90 %", numeric: true, show: vagueness };
   const began = { title: "Record", show: (m: Mode) => <Began asset={asset} id={m.record_id} at={m.time_utc} /> };
   return (
     <Card
@@ -91,7 +95,7 @@ function LeastKnown({ asset, times }: { asset: string; times: object }) {
       note="Records whose frequencies are least certain for their size, each with its widest mode: a mode is known the less, the more it is damped and the fewer of its cycles the record holds."
     >
       <Shown of={found} lines={5} none={<p class="quiet">No mode yet.</p>}>
-        {() => <ModeTable asset={asset} modes={rows} id={(m) => m.record_id} first={[began]} />}
+        {() => <ModeTable asset={asset} modes={rows} id={(m) => m.record_id} first={[began]} more={[vague]} />}
       </Shown>
     </Card>
   );

@@ -32,7 +32,7 @@ export default function Reports({ asset }: PageProps) {
               wide
               more={
                 <a href={url} target="_blank" rel="noreferrer">
-                  By itself, to print
+                  On a page of its own
                 </a>
               }
             >

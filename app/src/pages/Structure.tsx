@@ -24,7 +24,7 @@ function Version({ asset, version }: { asset: string; version: number | undefine
   );
   return (
     <Card
-      title={version === undefined ? "As adopted" : `Version ${version}`}
+      title={version === undefined ? "The adopted version" : `Version ${version}`}
       wide={version === undefined && !asked("beside")}
       note="Every part in its own phase: what is heavily damped does not pass through rest together. Green points are what the sensors measured, in the model's amplitude and phase. Frequencies and damping ratios are the updated ones, as in the report."
     >

@@ -13,7 +13,7 @@ import { later } from "../parts/later";
 import { SaveDrawn } from "../parts/plot/SaveMenu";
 import type { PageProps } from "../shell/place";
 import { assetUrl } from "../shell/place";
-import { between, count, frequency, percent, quantity, recordsOf, sentence, words, years } from "../words/numbers";
+import { between, count, frequency, percent, quantity, recordsOf, sentence, words, years, yearsTo } from "../words/numbers"; // prettier-ignore
 
 const Stiffness = later(() => import("../parts/Stiffness"));
 type Twin = Schemas["TwinOut"];
@@ -24,7 +24,7 @@ const RECORDS = [{ title: "Records", numeric: true, show: (m: Schemas["TwinMode"
 function Figures({ own, twin, alarms }: { own: Asset; twin: Twin; alarms: readonly Alarm[] }) {
   if (!twin.records) return null;
   const { modes, parameters: known } = twin;
-  const first = ["fore_aft_1", "side_side_1"].flatMap((label) => modes.filter((m) => m.label === label));
+  const first = modes.filter((m) => m.label === "fore_aft_1" || m.label === "side_side_1");
   const ground = Object.values(known.parameters).find((p) => p.unit === "N/m");
   const open = alarms.filter((a) => !a.acknowledged_by && !a.closed_by && !a.muted_until_utc).length;
   const figures: [string, string, string, string][] = first.map((m) => [
@@ -40,8 +40,10 @@ function Figures({ own, twin, alarms }: { own: Asset; twin: Twin; alarms: readon
     figures.push([`${ground.words}, ${of(ground)}`, value, interval, "timeline?show=ground"]);
   }
   figures.push(["open alarms", String(open), `${count(alarms.length, "alarm")} in all`, "alarms"]);
-  if (own.remaining_years !== null)
-    figures.push(["life left", `${years(own.remaining_years)} years`, "of the first weld", "life"]);
+  if (own.remaining_years !== null) {
+    const interval = `${yearsTo(own.remaining_years_interval_90)} (90 %), of the first weld`;
+    figures.push(["life left", `${years(own.remaining_years)} years`, interval, "life"]);
+  }
   figures.push(["known from", count(twin.records, "record"), `of ${count(twin.days, "day")}`, "records"]);
   return (
     <dl class="figures">
@@ -139,10 +141,9 @@ export function Turbine({ asset }: PageProps) {
   const own = useAsset(asset, "");
   const twin = useAsset(asset, "/twin");
   const alarms = useAsset(asset, "/alarms");
-  const budget = useAsset(asset, "/damping-budget");
   if (own.data === undefined && own.problem) return <Trouble title={asset} problem={own.problem} again={own.again} />;
   const known = twin.data?.parameters;
-  const parameters = known?.parameters ?? {};
+  const [parameters, budget] = [known?.parameters ?? {}, known?.budget ?? []];
   return (
     <>
       {own.data ? <Head asset={own.data} twin={twin.data} /> : <h1 class="head">{asset}</h1>}
@@ -169,14 +170,10 @@ export function Turbine({ asset }: PageProps) {
         <Card
           title="Damping by source"
           note={`Damping ratio in %. ${restsOn(known)}.`}
-          more={
-            budget.data?.items.length ? (
-              <SaveDrawn title="Damping by source" csv={() => budgetCsv(budget.data?.items ?? [])} />
-            ) : null
-          }
+          more={budget.length > 0 && <SaveDrawn title="Damping by source" csv={() => budgetCsv(budget)} />}
         >
-          <Shown of={budget} none={<NotYet />} lines={7}>
-            {(data) => <Budget asset={asset} modes={data.items} />}
+          <Shown of={twin} some={() => budget.length} none={<NotYet />} lines={7}>
+            {() => <Budget asset={asset} modes={budget} />}
           </Shown>
         </Card>
         <Card

@@ -34,7 +34,7 @@ function Add({ again }: { again: () => void }) {
         required
         autocomplete="new-password"
       />
-      <Field label="Turbines it may see, by comma; none for all" name="assets" />
+      <Field label="Turbines to see, separated by commas; empty for all" name="assets" />
     </Form>
   );
 }
@@ -48,7 +48,7 @@ export default function Users() {
         With the first user, everybody needs a login. Until then this server answers to its own machine only.
       </Head>
       <div class="grid">
-        <Card title="Who may">
+        <Card title="Who may log in">
           <Shown of={users} none={<Empty title="No user yet" />}>
             {(data) => (
               <Table

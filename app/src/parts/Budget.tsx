@@ -90,6 +90,9 @@ export function Budget({ asset, modes }: { asset: string; modes: readonly Schema
         {modes.map((mode) => (
           <Row key={mode.label} asset={asset} mode={mode} most={most} />
         ))}
+        <p class="ends">
+          0 <span>{percent(most, null, 1)} %</span>
+        </p>
       </div>
     </div>
   );

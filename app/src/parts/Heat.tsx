@@ -30,11 +30,15 @@ export interface HeatProps {
   cross?: Ends | null;
 }
 
+/** The least and the greatest of a grid. */
+export function extremes(cells: HeatProps["cells"]): Ends {
+  const known = cells.flat().filter((v): v is number => v !== null);
+  return [known.reduce((a, b) => Math.min(a, b), Infinity), known.reduce((a, b) => Math.max(a, b), -Infinity)];
+}
+
 /** The grid as an image of one pixel a cell. */
 function picture(cells: HeatProps["cells"]): string {
-  const known = cells.flat().filter((v): v is number => v !== null);
-  const low = known.reduce((a, b) => Math.min(a, b), Infinity);
-  const high = known.reduce((a, b) => Math.max(a, b), -Infinity);
+  const [low, high] = extremes(cells);
   const sheet = document.createElement("canvas");
   [sheet.width, sheet.height] = [cells[0]?.length ?? 1, cells.length];
   const ink = sheet.getContext("2d");

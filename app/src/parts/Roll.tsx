@@ -6,7 +6,7 @@ import { PAINTS } from "./modes";
 import { csvFrom, stamp } from "./plot/series";
 
 const KEPT_S = 240;
-const LANE_PX = [22, 56] as const;
+const [LEAST_PX, MOST_PX, PHONE_PX, ROOM_PX] = [22, 84, 56, 760];
 const NAMES_PX = 140;
 
 type Piece = { from: number; step: number; values: readonly (number | null)[] };
@@ -122,7 +122,8 @@ export function Lanes({ roll, span }: { roll: Roll; span: number }) {
     let lanes: Lane[] = [];
     const next = (): void => {
       const names = [...roll.channels.keys()];
-      const each = Math.round(ratio * Math.max(LANE_PX[0], Math.min(LANE_PX[1], 620 / Math.max(names.length, 1))));
+      const most = sheet.clientWidth < 480 ? PHONE_PX : MOST_PX;
+      const each = Math.round(ratio * Math.max(LEAST_PX, Math.min(most, ROOM_PX / Math.max(names.length, 1))));
       const [width, height] = [Math.round(sheet.clientWidth * ratio), Math.max(each * names.length, 120 * ratio)];
       const step = span / (width - left);
       const moved = Math.floor(roll.now() / step) - column;
@@ -152,5 +153,12 @@ export function Lanes({ roll, span }: { roll: Roll; span: number }) {
     next();
     return () => cancelAnimationFrame(frame);
   }, [roll, span, dark]);
-  return <canvas class="lanes drawn" ref={canvas} role="img" aria-label={`Signals of the last ${span} s`} />;
+  return (
+    <>
+      <canvas class="lanes drawn" ref={canvas} role="img" aria-label={`Signals of the last ${span} s`} />
+      <p class="ends">
+        −{span} s <span>now</span>
+      </p>
+    </>
+  );
 }

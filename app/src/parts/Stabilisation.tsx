@@ -45,7 +45,7 @@ function Chart({ poles, picks, onPick, modes }: ChartProps) {
     });
     const marks = modes.map((m) => ({ x: m.frequency_hz, words: words(m.label), colour: "quiet" }));
     const names = { title: "Stabilisation chart", xName: "frequency [Hz]", yName: "model order" };
-    return { ...names, time: false, series, marks };
+    return { ...names, series, marks };
   }, [groups, modes]);
   const chosen = (series: number, index: number): void => {
     const pole = groups[series]?.[index];

@@ -17,11 +17,11 @@ export const number = <T,>(
   title: string,
   unit: string,
   by: (row: T) => number | null | undefined,
-  { say = String }: { say?: (value: number) => ComponentChildren } = {},
+  { say = String }: { say?: (value: number, row: T) => ComponentChildren } = {},
 ): Column<T> => {
   const show = (row: T): ComponentChildren => {
     const value = by(row);
-    return typeof value === "number" ? say(value) : "–";
+    return typeof value === "number" ? say(value, row) : "–";
   };
   return { title, unit, numeric: true, show, by: (row) => by(row) ?? null };
 };

@@ -46,8 +46,8 @@ export function restPlot(watch: Watch, index: number, marks: Mark[], planted?: P
       x,
       y: rest.map((v, i) => (v === null || (x[i] ?? 0) < planted.from ? null : v + scale * planted.by)),
     });
-  const yName = q?.kind === "angle" ? "left by conditions [°]" : "left by conditions [%]";
-  return { title: q ? title(q) : "", time: true, xName: "UTC", yName, series, marks };
+  const yName = q?.kind === "angle" ? "unexplained by conditions [°]" : "unexplained by conditions [%]";
+  return { title: q ? title(q) : "", yName, series, marks };
 }
 
 const NotYet = () => (
@@ -76,7 +76,7 @@ export default function Evidence({ asset, marks }: { asset: string; marks: Mark[
     <Card
       title="Evidence for a change"
       wide
-      note="ln R of each day: an alarm is raised where it reaches the line, in the mean not more often than promised while nothing changes. After an alarm it begins anew."
+      note="R: how many times more likely the days are if something changed than if nothing did. An alarm is raised where ln R reaches the line, in the mean not more often than promised while nothing changes; then it begins anew."
     >
       <Shown of={found} some={(data) => data.days.length} none={<NotYet />}>
         {(data) => <Drawn watch={data} marks={marks} />}
@@ -91,8 +91,6 @@ function Drawn({ watch, marks }: { watch: Watch; marks: Mark[] }) {
     const x = watch.days.map(noon);
     return {
       title: `Evidence, at most one false alarm in ${watch.arl_years} years`,
-      time: true,
-      xName: "UTC",
       yName: "ln R",
       series: [
         { name: "ln R", colour: "blue", kind: "line", x, y: watch.ln_evidence },

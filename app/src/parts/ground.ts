@@ -32,8 +32,6 @@ export function stiffnessPlot(found: Supports, others: Supports[]): PlotData {
   const later = spans((time?.forecast ?? []).map((f) => [last + f.days * DAY_S, f]));
   return {
     title: "Ground stiffness through time",
-    time: true,
-    xName: "UTC",
     yName: "over that of the first day",
     series: [
       { name: "90 % by now", colour: "blue", kind: "band", ...now },

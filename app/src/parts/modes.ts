@@ -40,8 +40,13 @@ export function byLabel(modes: readonly Mode[]): Map<string, Mode[]> {
   return found;
 }
 
+/** From the day that a change began to that on which it was found. */
 export const alarmMarks = (alarms: readonly Alarm[] = []): Mark[] =>
-  alarms.map((a) => ({ x: seconds(a.time_utc), words: `alarm ${day(a.time_utc)}`, colour: "alarm" }));
+  alarms.map(({ time_utc: found, params: { began } }) => {
+    const mark = { x: seconds(found), words: `alarm ${day(found)}`, colour: "alarm" };
+    if (typeof began !== "string") return mark;
+    return { ...mark, x: seconds(`${began}T00:00:00Z`), to: mark.x, words: `began ${began}, alarm ${day(found)}` };
+  });
 
 export function modePlot(label: string, modes: readonly Mode[], what: string, marks: Mark[]): PlotData {
   const damping = what === "damping";
@@ -53,8 +58,6 @@ export function modePlot(label: string, modes: readonly Mode[], what: string, ma
   };
   return {
     title: words(label),
-    time: true,
-    xName: "UTC",
     yName: damping ? "damping ratio [%], 90 % intervals" : "frequency [Hz], 90 % intervals",
     log: damping,
     series: [
@@ -83,8 +86,6 @@ export function binPlot(bins: Bins, what: string, marks: Mark[]): PlotData {
   const same = { colour: modeColour(bins.label), x };
   return {
     title: words(bins.label),
-    time: true,
-    xName: "UTC",
     yName: damping ? "damping ratio [%]" : "frequency [Hz]",
     log: damping,
     series: [

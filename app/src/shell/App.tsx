@@ -111,7 +111,8 @@ export function App() {
   const user = me.value;
   const { page, asset, id } = route.value;
   useEffect(() => {
-    if (user === null && page !== "login") go(`/login?next=${encodeURIComponent(place.value.path)}`, true);
+    if (user === null && page !== "login")
+      go(`/login?next=${encodeURIComponent(place.value.path + location.search)}`, true);
     if (user) listen();
     else stopListening();
   }, [user, page]);

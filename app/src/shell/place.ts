@@ -115,11 +115,15 @@ document.addEventListener("click", (event) => {
   go(link.pathname + link.search);
 });
 
+/** A part of a path, of whatever bytes: what is no UTF-8 names nothing. */
+const decoded = (part: string): string =>
+  new URLSearchParams(`_=${part.replaceAll("+", "%2B").replaceAll("&", "%26")}`).get("_") ?? "";
+
 export type Route = { page: string; asset: string; id: string };
 
 /** /assets/wtg/records/1a2b is the page "record" of "wtg"; pages of no turbine have no asset. */
 export function routeOf(path: string): Route {
-  const [first = "", asset = "", page = "", id = ""] = path.split("/").slice(1).map(decodeURIComponent);
+  const [first = "", asset = "", page = "", id = ""] = path.split("/").slice(1).map(decoded);
   if (first !== "assets" || !asset) return { page: first || "fleet", asset: "", id: "" };
   return { page: id ? "record" : page || "turbine", asset, id };
 }

@@ -99,6 +99,11 @@ export const years = (value: number | null): string =>
   value === null || !Number.isFinite(value) || value > LONG_YEARS
     ? "> 1000"
     : String(Number(value.toPrecision(value < 10 ? 1 : 2)));
+type Ends = readonly (number | null)[] | null;
+/** "0.3 to 22", and with the median before. */
+export const yearsTo = (ends: Ends): string => `${years(ends?.[0] ?? null)} to ${years(ends?.[1] ?? null)}`;
+export const yearsWithin = (value: number | null, ends: Ends): string =>
+  years(value) + (years(ends?.[0] ?? null) === years(ends?.[1] ?? null) ? "" : ` (${yearsTo(ends)})`);
 /** A sentence of the server with modes and numbers as the pages write them. */
 export const sentence = (text: string): string =>
   text

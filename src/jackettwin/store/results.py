@@ -369,25 +369,28 @@ class Estimated:
 
     Attributes
     ----------
-    remaining_years : median of the years left to the weld that fails first, where known
+    remaining_years, remaining_years_interval_90 : median of the years left to the weld that fails first, and
+        90 % interval, where known; None of its ends is one that nobody waits for
     reliable : False if the model cannot reproduce the measurements
     """
 
     remaining_years: float | None = None
+    remaining_years_interval_90: tuple[float | None, float | None] | None = None
     reliable: bool = True
 
 
 def estimated(connection: Connection, asset: str | None = None) -> dict[str, Estimated]:
     """Return what the estimates of the adopted versions say in short, {asset: …}, where there is one."""
-    years = knowledge.c.document["life"][0]["remaining_years"]["p50"]
+    years = knowledge.c.document["life"][0]["remaining_years"]
     reliable = knowledge.c.document["known"]["reliable"].as_boolean()
     known = (knowledge.c.asset == assets.c.name) & (knowledge.c.version == assets.c.adopted_version)
     query = select(assets.c.name, years, reliable).join(knowledge, known)
     query = query if asset is None else query.where(assets.c.name == asset)
-    return {
-        name: Estimated(None if left is None else float(left), meets is not False)
-        for name, left, meets in connection.execute(query)
-    }
+    found = {}
+    for name, left, meets in connection.execute(query):
+        interval = None if left is None else (left.get("p05"), left.get("p95"))
+        found[name] = Estimated((left or {}).get("p50"), interval, meets is not False)
+    return found
 
 
 def find_finding(connection: Connection, finding_id: int) -> Mapping[str, Any] | None:

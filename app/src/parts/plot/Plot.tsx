@@ -56,8 +56,8 @@ function joined(series: Series[]): uPlot.AlignedData {
 }
 
 /** What a chart is made for; of other data of the same form only the numbers are exchanged. */
-const formOf = ({ time, log, logX, series }: PlotData): string =>
-  JSON.stringify([time, log, logX, series.map((s) => [s.kind, s.colour, s.solid, s.dash, sizeOf(s)])]);
+const formOf = ({ xName, log, logX, series }: PlotData): string =>
+  JSON.stringify([!xName, log, logX, series.map((s) => [s.kind, s.colour, s.solid, s.dash, sizeOf(s)])]);
 /** Points by how large they are drawn; of lines whether they are points, too. */
 const sizeOf = ({ kind, x }: Series): number =>
   kind === "band" ? 0 : kind === "line" ? Number(x.length < 3) : x.length > 200 ? 4 : 6;
@@ -106,11 +106,11 @@ function options(
     legend: { show: false },
     tzDate: (at) => uPlot.tzDate(new Date(at * 1e3), "Etc/UTC"),
     scales: {
-      x: { time: data.time, distr: data.logX ? 3 : 1, range: () => latest.current.shown },
+      x: { time: !data.xName, distr: data.logX ? 3 : 1, range: () => latest.current.shown },
       y: { distr: data.log ? 3 : 1, range: () => spanOf(latest.current.data, latest.current.shown) },
     },
     axes: [
-      { ...axis, space: 70, ...(data.time ? { values: TIMES } : { ...ownTicks(data.logX), size: 30 }) },
+      { ...axis, space: 70, ...(data.xName ? { ...ownTicks(data.logX), size: 30 } : { values: TIMES }) },
       {
         ...axis,
         ...ownTicks(data.log),
@@ -123,7 +123,7 @@ function options(
 
 export function Plot({ data, height = 220, onPick, together, first = null }: PlotProps) {
   const zoom = useZoom(together ?? data.title, first);
-  const [range, onRange] = data.time ? [stretch.value ?? first, keepStretch] : zoom;
+  const [range, onRange] = data.xName ? zoom : [stretch.value ?? first, keepStretch];
   const root = useRef<HTMLDivElement>(null);
   const width = useWidth(root);
   const chart = useRef<uPlot | null>(null);
@@ -241,7 +241,7 @@ export function Plot({ data, height = 220, onPick, together, first = null }: Plo
     <figure class="plot">
       <figcaption>
         <b>{data.title}</b>
-        <span class="unit">{raised(data.time ? data.yName : `${data.yName} by ${data.xName}`)}</span>
+        <span class="unit">{raised(data.yName + (data.xName ? ` by ${data.xName}` : ""))}</span>
         <span class="legend">
           {data.series.length > 1 &&
             data.series.map((s) => (

@@ -23,11 +23,28 @@ export interface Series {
 /** A moment, or a stretch, that something is said of. */
 export type Mark = { x: number; to?: number; words: string; colour: string };
 
+/** Where the words of marks stand: right of their own, left of it where there is no room, in the first free line. */
+export function wordsOf(
+  marks: readonly Mark[] = [],
+  px: (x: number) => number,
+  wide: (words: string) => number,
+  [left, right]: Range,
+): (Mark & { at: number; line: number })[] {
+  const [free, inOrder] = [[-Infinity, -Infinity, -Infinity], marks.toSorted((a, b) => a.x - b.x)]; // where each line ends
+  return inOrder.flatMap((mark) => {
+    const [x, width] = [px(mark.x), wide(mark.words)];
+    const at = Math.max(x + width > right ? x - width : x, left);
+    const line = free.findIndex((end) => at > end);
+    if (x < left || x > right || line < 0) return [];
+    free[line] = at + width;
+    return [{ ...mark, at, line }];
+  });
+}
+
 export interface PlotData {
   title: string;
-  /** A time axis counts seconds since 1970. */
-  time: boolean;
-  xName: string;
+  /** Where it has no name, x is time: seconds since 1970. */
+  xName?: string;
   yName: string;
   log?: boolean;
   /** Whether the x axis counts decades; never with time. */
@@ -47,11 +64,11 @@ export const csvFrom = (rows: readonly (readonly Cell[])[]): string =>
   rows.map((row) => row.map((cell) => quoted(String(cell ?? ""))).join(",") + "\n").join("");
 
 /** One line a point: series, x, y, low, high. */
-export const csvOf = ({ series, time, xName, yName }: PlotData): string =>
+export const csvOf = ({ series, xName, yName }: PlotData): string =>
   csvFrom([
-    ["series", time ? "time_utc" : xName, yName, "low", "high"],
+    ["series", xName ?? "time_utc", yName, "low", "high"],
     ...series.flatMap((s) =>
-      Array.from(s.x, (x, i): Cell[] => [s.name, time ? stamp(x) : x, s.y[i], s.low?.[i], s.high?.[i]]),
+      Array.from(s.x, (x, i): Cell[] => [s.name, xName ? x : stamp(x), s.y[i], s.low?.[i], s.high?.[i]]),
     ),
   ]);
 
@@ -102,17 +119,17 @@ export function spanOf(plot: PlotData, range: Range | null, vague = VAGUE): Rang
 export function extentOf(plot: PlotData): Range {
   let [first, last] = [Infinity, -Infinity];
   for (const s of plot.series) {
-    const ends = plot.time ? [s.x[0], s.x[s.x.length - 1]] : Array.from(s.x); // times are in order
+    const ends = !plot.xName ? [s.x[0], s.x[s.x.length - 1]] : Array.from(s.x); // times are in order
     for (const x of ends) if (x !== undefined) [first, last] = [Math.min(first, x), Math.max(last, x)];
   }
   if (first > last) return plot.logX ? [0.1, 1] : [0, 1];
   if (plot.logX) return [first, last];
-  const room = (last - first || (plot.time ? 86_400 : 1)) * 0.02;
+  const room = (last - first || (plot.xName ? 1 : 86_400)) * 0.02;
   return [first - room, last + room];
 }
 
 export const readX = (plot: PlotData, x: number, span: number): string =>
-  !plot.time ? short(x, 5) : span > 40 * 86_400 ? day(stamp(x)) : `${utc(stamp(x))} UTC`;
+  plot.xName ? short(x, 5) : span > 40 * 86_400 ? day(stamp(x)) : `${utc(stamp(x))} UTC`;
 
 /** Places of an axis that people count in. */
 export function ticksOf([low, high]: Range, most: number, log = false): number[] {

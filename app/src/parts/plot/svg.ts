@@ -1,7 +1,7 @@
 // A plot as a drawing of its own, for documents: the same series, marks and range as on the page.
 import type { PlotData, Range, Series } from "./series";
 import { onAxis, raised } from "../../words/numbers";
-import { readX, spanOf, ticksOf, timeTicksOf } from "./series";
+import { readX, spanOf, ticksOf, timeTicksOf, wordsOf } from "./series";
 
 const [WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM] = [900, 360, 70, 16, 40, 46];
 const escaped = (text: string): string =>
@@ -39,24 +39,21 @@ export function svgOf(plot: PlotData, range: Range, paint: (name: string) => str
     parts.push(`<path d="M${LEFT} ${at(py(v))}H${WIDTH - RIGHT}" stroke="${paint("line")}"/>`);
     text(LEFT - 6, py(v) + 4, onAxis(v), "end");
   }
-  for (const v of plot.time ? timeTicksOf(range, 6) : ticksOf(range, 6, plot.logX))
-    text(px(v), HEIGHT - BOTTOM + 18, plot.time ? readX(plot, v, range[1] - range[0]) : onAxis(v), "middle");
+  for (const v of plot.xName ? ticksOf(range, 6, plot.logX) : timeTicksOf(range, 6))
+    text(px(v), HEIGHT - BOTTOM + 18, plot.xName ? onAxis(v) : readX(plot, v, range[1] - range[0]), "middle");
   text(LEFT, 18, plot.title);
   text(LEFT, 34, raised(plot.yName));
-  text(WIDTH - RIGHT, HEIGHT - 6, plot.xName, "end");
-  const free = [-Infinity, -Infinity, -Infinity]; // where each line of words ends
-  for (const { x, to, words, colour } of plot.marks?.toSorted((a, b) => a.x - b.x) ?? []) {
+  text(WIDTH - RIGHT, HEIGHT - 6, plot.xName ?? "UTC", "end");
+  for (const s of plot.series) parts.push(...shapes(s, range, plot.log ?? false, px, py, paint(s.colour)));
+  const down = HEIGHT - BOTTOM - top;
+  for (const { x, to, colour } of plot.marks ?? []) {
     if (x < range[0] || x > range[1]) continue;
-    const [down, line] = [HEIGHT - BOTTOM - top, free.findIndex((end) => px(x) > end)];
-    const look = `stroke="${paint(colour)}" stroke-dasharray="4 3"`;
-    parts.push(`<path d="M${at(px(x))} ${top}v${down}" ${look}/>`);
+    parts.push(`<path d="M${at(px(x))} ${top}v${down}" stroke="${paint(colour)}" stroke-dasharray="4 3"/>`);
     if (to !== undefined)
       parts.push(`<path d="M${at(px(x))} ${top}H${at(px(to))}v${down}H${at(px(x))}Z" fill="${paint(colour)}" fill-opacity="0.13"/>`); // prettier-ignore
-    if (line < 0) continue;
-    text(px(x) + 4, top + 12 + 14 * line, words);
-    free[line] = px(x) + 8 + LETTER * words.length;
   }
-  for (const s of plot.series) parts.push(...shapes(s, range, plot.log ?? false, px, py, paint(s.colour)));
+  for (const one of wordsOf(plot.marks, px, (words) => 8 + LETTER * words.length, [LEFT, WIDTH - RIGHT]))
+    text(one.at + 4, top + 12 + 14 * one.line, one.words);
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${HEIGHT}" font-family="sans-serif" font-size="12" fill="${paint("ink")}"><rect width="${WIDTH}" height="${HEIGHT}" fill="${paint("paper")}"/>${parts.join("")}</svg>`;
 }
 

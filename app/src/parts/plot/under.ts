@@ -1,7 +1,7 @@
 // What stands behind and beside the lines of a plot: intervals, what is beyond the scale, marks.
 import type uPlot from "uplot";
 import { colour } from "../../shell/theme";
-import type { PlotData, Series } from "./series";
+import { type PlotData, type Series, wordsOf } from "./series";
 
 type Scale = (v: number) => number;
 type Canvas = uPlot.BBox & { ctx: CanvasRenderingContext2D; px: Scale; py: Scale };
@@ -45,31 +45,39 @@ function beyond(c: Canvas, s: Series): void {
   c.ctx.fill();
 }
 
-/** Names of points, above and below by turns, as neighbours may stand close. */
+/** Words in front of lines: with a rim of paper around them. */
+function write(c: Canvas, text: string, paint: string, x: number, y: number): void {
+  [c.ctx.fillStyle, c.ctx.strokeStyle, c.ctx.lineWidth] = [paint, colour("paper"), 3 * devicePixelRatio];
+  c.ctx.strokeText(text, x, y);
+  c.ctx.fillText(text, x, y);
+}
+
+const BESIDE_PX = [-9, 18, -24, 33, -39, 48];
+/** Names of points, above or below them where no other name is. */
 function names(c: Canvas, s: Series): void {
-  const ratio = devicePixelRatio;
-  c.ctx.font = `${12 * ratio}px system-ui, sans-serif`;
+  const [ratio, taken] = [devicePixelRatio, [] as [number, number, number][]];
   c.ctx.textAlign = "center";
-  [c.ctx.fillStyle, c.ctx.strokeStyle, c.ctx.lineWidth] = [colour(s.colour), colour("paper"), 3 * ratio];
   s.names?.forEach((name, i) => {
-    const half = c.ctx.measureText(name).width / 2;
+    const half = c.ctx.measureText(name).width / 2 + 2 * ratio;
     const x = Math.min(Math.max(c.px(s.x[i] ?? NaN), c.left + half), c.left + c.width - half);
-    const y = Math.min(c.py(s.y[i] ?? NaN) + (i % 2 ? 18 : -9) * ratio, c.top + c.height - 3 * ratio);
-    c.ctx.strokeText(name, x, y);
-    c.ctx.fillText(name, x, y);
+    const places = BESIDE_PX.map((by) => c.py(s.y[i] ?? NaN) + by * ratio);
+    const inside = places.filter((y) => y > c.top + 10 * ratio && y < c.top + c.height - 2 * ratio);
+    const apart = (y: number, one: (typeof taken)[0]): boolean =>
+      Math.abs(x - one[0]) > half + one[2] || Math.abs(y - one[1]) > 13 * ratio;
+    const y = inside.find((place) => taken.every((one) => apart(place, one))) ?? inside[0] ?? NaN;
+    taken.push([x, y, half]);
+    write(c, name, colour(s.colour), x, y);
   });
 }
 
-function marks(u: uPlot, c: Canvas, data: PlotData): void {
+function marks(c: Canvas, { marks = [] }: PlotData): void {
   const ratio = devicePixelRatio;
-  c.ctx.font = `${12 * ratio}px system-ui, sans-serif`;
-  const free = [-Infinity, -Infinity, -Infinity]; // where each line of words ends
-  for (const mark of data.marks?.toSorted((a, b) => a.x - b.x) ?? []) {
-    const px = u.valToPos(mark.x, "x", true);
+  for (const mark of marks) {
+    const px = c.px(mark.x);
     const paint = colour(mark.colour);
     if (mark.to !== undefined) {
       c.ctx.fillStyle = paint + "22";
-      c.ctx.fillRect(px, c.top, u.valToPos(mark.to, "x", true) - px, c.height);
+      c.ctx.fillRect(px, c.top, c.px(mark.to) - px, c.height);
     }
     c.ctx.strokeStyle = paint;
     c.ctx.setLineDash([4 * ratio, 3 * ratio]);
@@ -79,20 +87,20 @@ function marks(u: uPlot, c: Canvas, data: PlotData): void {
     c.ctx.lineTo(px, c.top + c.height);
     c.ctx.stroke();
     c.ctx.setLineDash([]);
-    const width = c.ctx.measureText(mark.words).width;
-    const turned = px + width + 8 * ratio > c.left + c.width;
-    const line = free.findIndex((end) => (turned ? px - width : px) > end);
-    if (px >= c.left && px <= c.left + c.width && line >= 0) {
-      c.ctx.fillStyle = paint;
-      c.ctx.textAlign = turned ? "right" : "left";
-      c.ctx.fillText(mark.words, px + (turned ? -5 : 5) * ratio, c.top + (13 + 15 * line) * ratio);
-      free[line] = px + (turned ? 0 : width + 8 * ratio);
-    }
   }
 }
 
+/** What the marks say, in front of all lines. */
+function said(c: Canvas, { marks }: PlotData): void {
+  const ratio = devicePixelRatio;
+  c.ctx.textAlign = "left";
+  const wide = (words: string): number => c.ctx.measureText(words).width + 8 * ratio;
+  for (const { words, colour: paint, at, line } of wordsOf(marks, c.px, wide, [c.left, c.left + c.width]))
+    write(c, words, colour(paint), at + 4 * ratio, c.top + (13 + 15 * line) * ratio);
+}
+
 export function under(of: () => PlotData): uPlot.Plugin {
-  const drawn = (what: (u: uPlot, c: Canvas, data: PlotData) => void) => (u: uPlot) => {
+  const drawn = (what: (c: Canvas, data: PlotData) => void) => (u: uPlot) => {
     const { ctx } = u;
     const data = of();
     const { left, top, width, height } = u.bbox;
@@ -102,16 +110,21 @@ export function under(of: () => PlotData): uPlot.Plugin {
     ctx.beginPath();
     ctx.rect(left, top, width, height);
     ctx.clip();
-    what(u, { ctx, ...u.bbox, px, py }, data);
+    what({ ctx, ...u.bbox, px, py }, data);
     ctx.restore();
   };
-  const behind = drawn((u, c, data) => {
+  const behind = drawn((c, data) => {
     for (const s of data.series) {
       if (s.kind !== "points") continue;
       intervals(c, s);
       beyond(c, s);
     }
-    marks(u, c, data);
+    marks(c, data);
   });
-  return { hooks: { drawAxes: behind, draw: drawn((_, c, data) => data.series.forEach((s) => names(c, s))) } };
+  const front = drawn((c, data) => {
+    c.ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+    data.series.forEach((s) => names(c, s));
+    said(c, data);
+  });
+  return { hooks: { drawAxes: behind, draw: front } };
 }

@@ -208,9 +208,11 @@ def overview(
             records=counts.get(row.name, {}),
             findings=said.get(row.name, {}),
             remaining_years=estimate.remaining_years,
+            remaining_years_interval_90=interval and list(interval),
         )
         for row in assets.summaries(connection, name, archived=archived)
         for estimate in [known.get(row.name, results.Estimated())]
+        for interval in [estimate.remaining_years_interval_90]
         if seen is None or row.name in seen
     ]
 

@@ -227,7 +227,8 @@ def know(question: Question) -> Outcome | None:
         try:
             known, sections = verdict.known(twin, sums, question.newest, question.in_all)
             if sections is not None:
-                about = f"version {question.version}"
+                about = f"version {question.version} · {known['records']} records"
+                about += f" up to {(known['until_utc'] or '')[:10]} · intervals are 90 %"
                 page = verdict.report(sections, followed, title=question.asset, subtitle=about)
         except JackettwinError as error:
             known = {"status": str(error), "parameters": {}}

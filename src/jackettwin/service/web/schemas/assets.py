@@ -32,6 +32,9 @@ class AssetOut(BaseModel):
     remaining_years: float | None = Field(
         description="Median of the years left to the weld that fails first, if known."
     )
+    remaining_years_interval_90: list[float | None] | None = Field(
+        description="Its 90 % interval; null where an end lies beyond what is told."
+    )
     latitude_deg: float | None = None
     longitude_deg: float | None = None
 
