@@ -11,10 +11,8 @@ from pathlib import Path
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record, read_record, write_record
 from jackettwin.study import run_twin
-from jackettwin.study.fit_data import recorded_modes
 from jackettwin.study.measure import Measured, measure
 from jackettwin.study.narrative import cautions
 from jackettwin.twin import ALL, TwinModel, read_twin
@@ -108,38 +106,3 @@ def test_a_renamed_copy_counts_once_and_is_named(config: TwinConfig, tmp_path: P
     assert twice.state == once.state
     assert [seen.name for seen in twice.observations] == [first.stem]
     assert [(f.code, f.subject) for f in twice.findings] == [("record_doubled", "copy")]
-
-
-def test_a_mode_that_record_and_model_doubt_is_left_out() -> None:
-    """A shoulder 10 % beside the model's mode, doubted by its record, made a right model "not reliable"."""
-    config, model = twin()
-    config = replace(config, records=config.records[:1])
-    whole = measured(config)
-    (seen,) = whole.observations
-    place, number = next((i, k.mode) for i, k in enumerate(seen.recognised) if k is not None and k.mode == 4)
-
-    def found(status: str, difference: float) -> Measured:
-        modes, held = list(seen.identification.modes), list(seen.held)
-        modes[place] = replace(modes[place], status=ModeStatus(status))
-        held[place] = replace(held[place], difference=difference)
-        one = replace(seen, identification=replace(seen.identification, modes=tuple(modes)), held=tuple(held))
-        return replace(whole, observations=(one,))
-
-    for status, difference, left_out in (
-        ("doubtful", -0.1, True),
-        ("doubtful", 0.02, False),
-        ("ok", -0.1, False),
-    ):
-        judged = found(status, difference)
-        kept = recorded_modes(config, judged.state, model.labels, judged.clearest, judged.doubted)
-        assert (number not in {m.mode for m in kept}) == left_out
-        said = [
-            line
-            for line in cautions(config, judged, kept, (), model.labels)
-            if "is left out: the model" in line
-        ]
-        assert len(said) == left_out and all(model.labels[number - 1] in line for line in said)
-    # what another record shows, or a state that these observations are only a part of, is not left out
-    judged = found("doubtful", -0.1)
-    assert replace(judged, observations=(*judged.observations, seen)).doubted(number) is None
-    assert replace(judged, in_all=(9, 5400.0)).doubted(number) is None

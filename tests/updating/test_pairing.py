@@ -1,9 +1,12 @@
 """Pairing: close modes mix in measured shapes, and still each gets its own name."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from jackettwin.identification import ModalEstimate
+from jackettwin.identification.status import ModeStatus
 from jackettwin.updating.data.pairing import counterparts, pair, pairing_score
 
 FREQUENCY = np.array([0.177, 0.180, 0.65, 0.775, 0.800])
@@ -47,6 +50,20 @@ def test_every_mode_of_the_model_finds_itself_in_any_order(rng: np.random.Genera
 
 def test_the_right_shape_at_the_wrong_frequency_is_not_paired() -> None:
     assert pair((estimate(1.2, SHAPES[:, 3]),), FREQUENCY, SHAPES) == {}
+
+
+def test_a_doubtful_shoulder_beside_a_mode_is_not_paired() -> None:
+    """One 10 % beside the model's mode, which its record doubted, made a right model "not reliable"."""
+    for off, status, paired in (
+        (0.9, "doubtful", 0),
+        (0.9, "ok", 1),
+        (0.97, "doubtful", 1),
+        (1.12, "doubtful", 0),
+    ):
+        seen = (replace(estimate(0.65 * off, SHAPES[:, 2]), status=ModeStatus(status)),)
+        assert len(pair(seen, FREQUENCY, SHAPES)) == paired
+        verdict = counterparts(seen, FREQUENCY, SHAPES)[0].verdict
+        assert verdict == ("paired" if paired else "frequency")
 
 
 def test_the_right_frequency_with_the_wrong_shape_is_not_paired() -> None:

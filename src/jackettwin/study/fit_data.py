@@ -167,16 +167,13 @@ def recorded_modes(
     state: TwinState,
     labels: tuple[str, ...],
     clearest: Callable[[int], tuple[ModalEstimate, float] | None] = lambda _: None,
-    doubted: Callable[[int], object] = lambda _: None,
 ) -> tuple[MeasuredMode, ...]:
-    """Return the modes of the records, fused; those that every record doubts only if there are no others.
+    """Return the modes of the records, fused.
 
     Parameters
     ----------
     clearest : callable, optional
         Gives a mode as identified from the record that is most similar to the model, and the MAC.
-    doubted : callable, optional
-        Gives something of a mode that every record doubts.
 
     Raises
     ------
@@ -193,10 +190,9 @@ def recorded_modes(
             value=[path.name for path in config.records],
             remedy="check the sensors' places and directions, and the structure",
         )
-    sure = {mode: total for mode, total in totals.modes.items() if doubted(mode) is None}
     return tuple(
         _measured_mode(config, mean_target(mode, total), labels[mode - 1], clearest(mode))
-        for mode, total in (sure or totals.modes).items()
+        for mode, total in totals.modes.items()
     )
 
 

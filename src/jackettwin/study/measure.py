@@ -29,10 +29,6 @@ from jackettwin.twin.observe import observed
 from jackettwin.twin.observe_files import FileResult
 from jackettwin.updating import Target
 
-BELIEVED = 0.05
-"""Difference of a doubtful mode's frequency from that of the model on the most likely feet up to which it is
-believed: three times the errors that drawings usually leave."""
-
 
 @dataclass(frozen=True)
 class Measured:
@@ -70,23 +66,6 @@ class Measured:
         shown = [one.modes[mode] for one in self.observations if mode in one.modes]
         best = max(shown, key=lambda pair: pair[1].mac, default=None)
         return None if best is None else (best[0], best[1].mac)
-
-    def doubted(self, mode: int) -> ModalEstimate | None:
-        """Return the clearest estimate of a mode that record and model doubt wherever it was seen, else None.
-
-        A doubtful estimate is believed where the model has its shape near its frequency (:data:`BELIEVED`).
-        Of a state of more records than ``observations`` nothing is known.
-        """
-        clearest = self.clearest(mode)
-        believed = any(_believed(one, mode) for one in self.observations if mode in one.modes)
-        return None if self.in_all is not None or believed or clearest is None else clearest[0]
-
-
-def _believed(one: Observation, mode: int) -> bool:
-    estimate = one.modes[mode][0]
-    against = [held for own, held in zip(one.identification.modes, one.held, strict=False) if own is estimate]
-    far = any(abs(held.difference) > BELIEVED for held in against)
-    return not (far and estimate.status == "doubtful")
 
 
 def measure(

@@ -186,7 +186,6 @@ def cautions(
             *_of_another_model(config, found),
             *_of_records(found),
             *_strangers(found, labels, every=not updates),
-            *_doubted(found, measured, labels),
         ]
         lines += _wind_without_rotor(config, found, measured)
     lines += _open_dashpots(config, measured, updates)
@@ -318,18 +317,6 @@ def _strangers(found: Measured, labels: tuple[str, ...], *, every: bool) -> list
         if every or mode.status == "ok"
     )
     return [f"{name}: no counterpart in the model for {why}" for name, why in reasons if why is not None]
-
-
-def _doubted(found: Measured, measured: tuple[MeasuredMode, ...], labels: tuple[str, ...]) -> list[str]:
-    """Return a line for each mode that is left out because neither records nor model make it credible."""
-    kept = {m.mode for m in measured}
-    seen = sorted({mode for one in found.observations for mode in one.modes if labels and kept} - kept)
-    return [
-        f"{labels[mode - 1]} is left out: the model has it elsewhere, and every record doubts it at "
-        f"{estimate.frequency_hz:.4g} Hz: {estimate.status_reason}"
-        for mode in seen
-        if (estimate := found.doubted(mode)) is not None
-    ]
 
 
 def _misses(config: TwinConfig, m: MeasuredMode, f: float) -> bool:

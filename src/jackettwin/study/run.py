@@ -191,7 +191,7 @@ def _recorded(
 ) -> tuple[MeasuredMode, ...]:
     """Return the modes of the records; if none is in the model, log the identified modes."""
     try:
-        return recorded_modes(config, state, labels, found.clearest, found.doubted)
+        return recorded_modes(config, state, labels, found.clearest)
     except InputError:
         for line in cautions(config, found, (), (), labels)[:_MOST_REASONS]:
             log.warning(line)

@@ -22,6 +22,9 @@ MIXING = 0.06
 LEAST_MAC = 0.8
 """Smallest MAC of a pair: correct pairs of OpenFAST records have 0.87 or more, false ones (another direction,
 a blade mode) 0.73 or less."""
+BELIEVED = 0.05
+"""Difference of ln f up to which a doubtful estimate is paired: three times the error that drawings leave.
+Beside a mode there are shoulders of its shape, doubted by their records, which a fit would take for it."""
 LEAST_VISIBLE = 0.1
 """Smallest motion at the sensors relative to that of the most visible mode for a mode to be measurable."""
 
@@ -97,7 +100,7 @@ def counterparts(
     likely = np.log(np.maximum(subspace_mac, 1e-12)) - 0.5 * (apart / FREQUENCY_WIDTH) ** 2
     found = []
     for i, k in enumerate(np.argmax(likely, axis=1)):
-        far, unlike = abs(apart[i, k]) > 2.0 * FREQUENCY_WIDTH, subspace_mac[i, k] < LEAST_MAC
+        far, unlike = abs(apart[i, k]) > _reach(estimates[i]), subspace_mac[i, k] < LEAST_MAC
         verdict: Verdict = "shape" if unlike else "frequency" if far else "taken"
         mode, share = int(visible[k]), float(subspace_mac[i, k])
         other = Counterpart(mode, float(frequency_hz[mode]), float(np.expm1(apart[i, k])), share, verdict)
@@ -122,8 +125,13 @@ def _paired(
             "paired",
         )
         for i, k in zip(rows, columns, strict=True)
-        if subspace_mac[i, k] >= LEAST_MAC and abs(apart[i, k]) <= 2.0 * FREQUENCY_WIDTH
+        if subspace_mac[i, k] >= LEAST_MAC and abs(apart[i, k]) <= _reach(estimates[i])
     }
+
+
+def _reach(estimate: ModalEstimate) -> float:
+    """Return the largest difference of ln f over which a measured mode is paired."""
+    return BELIEVED if estimate.status == "doubtful" else 2.0 * FREQUENCY_WIDTH
 
 
 def _nearness(apart: Any) -> Any:
