@@ -1,7 +1,7 @@
 """Damping of modes whose decay lasts about as long as the record: single records and fused pieces.
 
 Usage: ``python qualify/light_damping.py [--sets 12] [--pieces 12] [--lines 0] [--zft 0.2 0.45 0.7 1.5]
-[--seed 41] [--out FILE.md]``.
+[--scatter 0.0] [--seed 41] [--out FILE.md]``.
 The world is not the product's: a shear frame of four storeys under forces held for a sample, discretised
 exactly; each piece is a record of its own time. Intervals of 90 and of 95 % are judged two-sided.
 """
@@ -134,7 +134,7 @@ def row(kind: str, zft: float, found: list[Outcome], rest: str) -> str:
     )
 
 
-def lines_alone(zft: float, number: int, pieces: int, seed: int) -> list[str]:
+def lines_alone(zft: float, number: int, pieces: int, seed: int, scatter: float) -> list[str]:
     """Return the rows of the likelihood by which the damping is estimated, without what identifies a mode."""
     ratio = zft / (FIRST_HZ * DURATION_S)
     inverse = np.linalg.pinv(frame(ratio)[2].T)[0]
@@ -143,7 +143,9 @@ def lines_alone(zft: float, number: int, pieces: int, seed: int) -> list[str]:
     likelihoods = []
     other: dict[str, list[float]] = {"maximum": [], "mean of ζ": []}
     for k in range(number):
-        data = record(ratio, np.random.default_rng([seed, k]), "lines").data
+        rng = np.random.default_rng([seed, k])
+        own = ratio * np.exp(scatter * rng.standard_normal() - 0.5 * scatter**2) if scatter else ratio
+        data = record(own, rng, "lines").data
         x = inverse @ np.fft.rfft(data - data.mean(axis=1, keepdims=True))[:, line]
         x /= RATE_HZ * np.sqrt(DURATION_S)
         likelihoods.append(damping_log_likelihood(x, FIRST_HZ, line / DURATION_S, DURATION_S))
@@ -202,6 +204,7 @@ def main() -> None:
     parser.add_argument("--sets", type=int, default=12)
     parser.add_argument("--pieces", type=int, default=12)
     parser.add_argument("--lines", type=int, default=0)
+    parser.add_argument("--scatter", type=float, default=0.0, help="of ln ζ between the records of lines")
     parser.add_argument("--seed", type=int, default=41)
     parser.add_argument("--zft", type=float, nargs="+", default=[0.2, 0.45, 0.7, 1.5])
     parser.add_argument("--out", type=Path, default=OUT)
@@ -212,7 +215,7 @@ def main() -> None:
     lines += [f"| {heads.replace('|', ' | ')} |", "|" + "---|" * 11]
     for zft in given.zft:
         lines += study(zft, given.sets, given.pieces, given.seed) if given.sets else []
-        lines += lines_alone(zft, given.lines, given.pieces, given.seed) if given.lines else []
+        lines += lines_alone(zft, given.lines, given.pieces, given.seed, given.scatter) if given.lines else []
         sys.stderr.write("\n".join(lines[-2:]) + "\n")
     given.out.write_text("\n".join([*lines, ""]), encoding="utf-8")
     sys.stdout.write("\n".join(lines) + "\n")
