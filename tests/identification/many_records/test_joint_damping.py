@@ -9,6 +9,7 @@ import pytest
 from tests.support.sightings import sightings
 
 from jackettwin.identification import ModalEstimate, fuse, identify
+from jackettwin.identification.many_records import joint_damping as joint
 from jackettwin.identification.many_records.joint_damping import joint_damping, jointly
 from jackettwin.identification.maximum_likelihood.line_likelihood import (
     LOG_ZETA,
@@ -55,6 +56,20 @@ def test_scatter_between_records_widens_the_interval_and_is_told(rng):
     # √((τ² + σ²)/n), and the mean of ζ, not of ln ζ: half a variance higher
     assert joint.log_std == pytest.approx(np.sqrt((0.36 + 0.09) / 60), rel=0.4)
     assert np.log(joint.damping_ratio) == pytest.approx(-5.0 + 0.18, abs=0.3)
+
+
+def test_the_nodes_left_out_of_many_records_that_scatter_change_nothing(rng, monkeypatch):
+    """300 records: interpolated over a step to what was left out, the mean was twice the true one."""
+    true = rng.normal(-5.0, 0.6, 300)
+    many = seen(true + rng.normal(0.0, 0.3, 300), 0.3)
+    windowed = joint_damping(many)
+    monkeypatch.setattr(joint, "MANY_RECORDS", 10**9)
+    whole = joint_damping(many)
+    # what the nodes left out have of the likelihood, which is nothing
+    assert windowed.damping_ratio == pytest.approx(whole.damping_ratio, rel=1e-3)
+    assert windowed.interval_90 == pytest.approx(whole.interval_90, rel=1e-3)
+    # five standard errors √((τ² + σ²)/n) of the mean of ζ
+    assert np.log(windowed.damping_ratio) == pytest.approx(-5.0 + 0.18, abs=0.2)
 
 
 @pytest.mark.parametrize("true_range", [0, 3])

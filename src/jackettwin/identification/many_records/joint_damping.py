@@ -48,8 +48,8 @@ MIXTURE_GAIN = 1e-3
 MANY_RECORDS, NODES_AROUND = 100, 6
 """Number of records from which only so many nodes on either side of the likeliest are computed: a factor of
 3.3, beyond which the interval of so many records does not reach."""
-TINY, FAR_BELOW = 1e-300, 100.0
-"""Least likelihood of a record, and how far below the least computed one that of other nodes is set."""
+TINY, FALLS = 1e-300, 1.0
+"""Least likelihood of a record, and least fall of the logarithm per node beyond those computed."""
 MIN_SHARE = 0.5
 """Smallest share of the records that must have a likelihood; otherwise estimates are averaged."""
 
@@ -93,7 +93,7 @@ def jointly(each: FloatArray) -> JointDamping:
     together = np.full((len(SCATTERS), len(LOG_ZETA)), -np.inf)
     for row, tau in zip(together, SCATTERS, strict=True):
         row[at] = _over_mixture((values if tau == 0.0 else values @ _kernel(tau))[:, :, at])
-    together = np.where(np.isfinite(together), together, together[:, at].min() - FAR_BELOW)
+    together = np.array([_continued(row) for row in together])
     over_scatter = logsumexp(together, axis=0, b=_SCATTER_WEIGHTS[:, None])
     middle, low, high, std = likelihood_interval(over_scatter)
     most = int(np.argmax(together.max(axis=1)))
@@ -104,6 +104,20 @@ def jointly(each: FloatArray) -> JointDamping:
         scatter=SCATTERS[most],
         log_likelihood=over_scatter,
     )
+
+
+def _continued(row: FloatArray) -> FloatArray:
+    """Return a log-likelihood (n_nodes,), continued beyond the computed nodes along its last slopes.
+
+    A step down to some low value would be overshot by the interpolation between nodes.
+    """
+    known = np.flatnonzero(np.isfinite(row))
+    first, last = known[0], known[-1]
+    below, above = np.arange(first), np.arange(1, len(row) - last)
+    out = row.copy()
+    out[:first] = row[first] - max(row[first + 1] - row[first], FALLS) * (first - below)
+    out[last + 1 :] = row[last] - max(row[last - 1] - row[last], FALLS) * above
+    return out
 
 
 def _scatter_weights() -> FloatArray:
