@@ -38,7 +38,7 @@ SCATTERS = (0.0, 0.2, 0.3, 0.4, 0.55, 0.75, 1.0)
 USUAL_SCATTER = 0.7
 """Standard deviation of the half-normal prior of τ. Side-side damping of a parked turbine is 1 % in a calm
 and 7 % at 25 m/s, a τ of 0.5 over all winds. Of sets of 4 and of 12 records with ζfT = 0.2 and a τ of 0, 0.3
-and 0.6, 94.5 to 97.7 % of the 95 % intervals contain the mean; with 0.5 for this prior 90 to 97 %."""
+and 0.6, 94.5 to 97.7 % have the mean within what 95 % should have; with 0.5 for this prior 90 to 97 %."""
 PRIOR_RECORDS = 2.0
 """α: the prior of the noise counts as so many records."""
 MIXTURE_STEPS = 40
