@@ -6,14 +6,17 @@ import json
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from observations import BEGUN, seen
 from tests.change.test_judge import CHANGED, MODEL, SIXTY, days_of
 
-from jackettwin.change import corrections
+from jackettwin.change import corrections, following
 from jackettwin.change.alarms import likeliest_of
+from jackettwin.change.following import Alarms, followed
 from jackettwin.change.judge import JUDGED, StoredMonitoring, judge
 from jackettwin.change.watch_document import (
     corrected_sentence,
@@ -22,7 +25,7 @@ from jackettwin.change.watch_document import (
     verdict_words,
     with_later_look,
 )
-from jackettwin.watching import CauseVerdict, Diagnosis
+from jackettwin.watching import CauseVerdict, Diagnosis, PendingChange
 
 
 def document(
@@ -158,3 +161,25 @@ def test_a_change_that_went_again_is_told_as_it_was_while_it_lasted() -> None:
     ice, back = (alarm["size_interval_90"] for alarm in after)
     assert ice[0] < -0.003 < ice[1] and back[0] < 0.003 < back[1]
     assert after[0]["looked_utc"] < gone.isoformat() < before[0]["looked_utc"] < after[1]["time_utc"]
+
+
+@pytest.mark.parametrize("same", [True, False])
+def test_more_of_a_change_starts_its_looks_anew_and_is_no_alarm(
+    same: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The alarm stays one, and is looked at again from the day on which more of it appeared."""
+    later = SimpleNamespace(day=20.0, began=19.0, kind="frequency")
+    look = SimpleNamespace(change=later, pending="of the later one")
+    pending = PendingChange(cast(Any, "watch"), 10.0, 15.0)
+    monkeypatch.setattr(following, "step", lambda *_: ("watch", look))
+    monkeypatch.setattr(following, "look_again", lambda *_: (None, None))
+    monkeypatch.setattr(following, "continues", lambda *_: same)
+    monkeypatch.setattr(following, "past_of", lambda one: one)
+    before = Alarms(({"looked_utc": "2025-01-01"},), pending, ({"looked_utc": "2025-01-01"},))
+    time = partial(lambda start, day: start + timedelta(days=day), datetime(2025, 1, 1, tzinfo=UTC))
+    tell = cast(Any, lambda *_: {"looked_utc": "2025-01-21"})
+    _, after, _ = followed(cast(Any, "watch"), before, cast(Any, "day"), tell, time)
+    if same:
+        assert after == replace(before, pending=replace(pending, alarmed=20.0, looked=20.0))
+    else:
+        assert len(after.documents) == 2 and after.pending == "of the later one"

@@ -12,6 +12,7 @@ from jackettwin.watching import (
     Look,
     Pattern,
     Watch,
+    continues,
     diagnose,
     general_causes,
     start,
@@ -49,6 +50,19 @@ def test_a_step_is_found_dated_measured_and_named(stepped: History) -> None:
     found = diagnose(change, causes, [kind for kind, _ in watch.quantities])
     assert found.verdicts[0].cause in ("first and second alike", "all modes alike")
     assert abs(sum(v.probability for v in found.verdicts) - 1.0) < 1e-9
+
+
+def test_the_rest_of_a_step_is_no_second_change(stepped: History) -> None:
+    """Scour in the largest storm so far was told in up to four alarms: the storm's effect did not heal."""
+    _, looks, (change,) = watched(stepped)
+    (pending,) = (look.pending for look in looks if look.pending is not None)
+    rest = replace(change, began_interval_90=(change.day, change.day + 5.0), size=0.3 * change.size)
+    assert continues(pending, rest)
+    assert not continues(pending, replace(rest, size=-rest.size))  # what falls off again
+    assert not continues(pending, replace(rest, kind="scatter"))
+    assert not continues(pending, replace(rest, kind="damping"))
+    late = (change.day + 1.1, change.day + 5.0)  # while the alarm is looked at, and surely after it
+    assert not continues(pending, replace(rest, began_interval_90=late))
 
 
 def test_what_conditions_leave_is_the_change_in_a_second_storm_too() -> None:

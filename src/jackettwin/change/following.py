@@ -9,7 +9,17 @@ from typing import Any
 
 from jackettwin.change.reversals import EarlierAlarm, past_of
 from jackettwin.change.watch_document import with_later_look
-from jackettwin.watching import Change, History, Look, PendingChange, Watch, look_again, step
+from jackettwin.watching import (
+    Change,
+    History,
+    Look,
+    PendingChange,
+    Watch,
+    continues,
+    known_further,
+    look_again,
+    step,
+)
 
 Tell = Callable[[Watch, Change, Sequence[EarlierAlarm]], Mapping[str, Any]]
 """Returns the document of a change as it looks on a day, after earlier alarms."""
@@ -47,7 +57,9 @@ def followed(
         if change is not None:
             looked = (*looked, tell(watch, change, [past_of(one) for one in told[:-1]]))
             told = (*told[:-1], with_later_look(told[-1], looked[-1]))
-    if look.change is not None:
+    if look.change is not None and alarms.pending is not None and continues(alarms.pending, look.change):
+        pending = known_further(pending or alarms.pending, look.change.day)
+    elif look.change is not None:
         if told:
             told = (*told[:-1], _before(told[-1], looked, look.change, time))
         looked, pending = (tell(watch, look.change, [past_of(one) for one in told]),), look.pending

@@ -42,6 +42,8 @@ from .state import Watch as Watch
 from .watch import (
     Look as Look,
     PendingChange as PendingChange,
+    continues as continues,
+    known_further as known_further,
     look_again as look_again,
     start as start,
     step as step,

@@ -256,6 +256,26 @@ def look_again(pending: PendingChange, day: History) -> tuple[PendingChange | No
     return PendingChange(after, pending.alarmed, pending.looked if change is None else after.last_day), change
 
 
+def continues(pending: PendingChange, later: Change) -> bool:
+    """Return whether a later change is the pending one, better known.
+
+    A step that begins with a storm larger than any before is divided between the step and an effect of the
+    storm that would heal. While it does not heal, the rest of the step appears as another that began with the
+    alarm and moves the same quantities the same way.
+    """
+    if later.kind == "scatter" or later.began_interval_90[0] > pending.alarmed + 1.0:
+        return False
+    worth = _worth(pending.watch)
+    first, _ = change_of(pending.watch, worth, _log_r(pending.watch, worth), pending.alarmed)
+    weight = np.where(later.members, later.size_std, np.inf) ** -2.0
+    return first.kind == later.kind and bool(weight @ (first.size * later.size) > 0.0)
+
+
+def known_further(pending: PendingChange, day: float) -> PendingChange:
+    """Return a pending change whose looks begin anew, since more of it appeared on a day."""
+    return replace(pending, alarmed=day, looked=day)
+
+
 def _pending(watch: Watch) -> PendingChange:
     """Return the data for estimating a change again: onsets, and the model most likely with the change."""
     blocks = tuple(with_one_model(b, model_of_change(b, watch.begins.log_stake)) for b in watch.blocks)
