@@ -138,6 +138,11 @@ def quiet(kind: str, seed: int, first_seed: int = QUIET_SEEDS) -> dict[str, Any]
     place = list(KINDS).index(kind)
     h = history(seasons(first_seed + 100 * place + seed, YEARS * 365.0, KINDS[kind]))
     h = untold(h) if first_seed == UNTOLD_SEEDS else h
+    return _alarms_by_arl(h)
+
+
+def _alarms_by_arl(h: History) -> dict[str, Any]:
+    """Return whether and after how many years a watch gives an alarm, by its ARL."""
     baseline, out = h.between(0.0, BASELINE), {}
     before = learnt(baseline, ARLS[0], patterns())
     for arl in ARLS:
@@ -247,12 +252,7 @@ def _at_fault(fault: str, seed: int, *, scoured: bool) -> tuple[History, float]:
 def quiet_at_fault(fault: str, seed: int) -> dict[str, Any]:
     """Return whether and after how many years a watch on a quiet turbine gives an alarm, by its ARL."""
     h, _ = _at_fault(fault, seed, scoured=False)
-    baseline, out = h.between(0.0, BASELINE), {}
-    before = learnt(baseline, ARLS[0], patterns())
-    for arl in ARLS:
-        _, looks = watched(h, calibrated(replace(before, arl_years=arl), baseline))
-        out[f"{arl:g}"] = [looks[-1].change is not None, (looks[-1].day - BASELINE) / 365.25]
-    return out
+    return _alarms_by_arl(h)
 
 
 def scour_at_fault(fault: str, seed: int) -> float | None:
