@@ -75,6 +75,9 @@ def test_what_no_ground_explains_has_no_interval(tmp_path: Path) -> None:
     assert known["status"] == verdict.CANNOT_MEET
     assert {found["interval_90"] for found in known["parameters"].values()} == {None}
     assert "cannot reproduce the measurements on any ground" in page
+    assert known["answers"][0]["answer"].startswith(
+        "The model cannot reproduce the measurements on any ground"
+    )
 
 
 def test_parameters_have_intervals_and_units(answered: tuple[dict, str]) -> None:

@@ -79,10 +79,10 @@ const Supports = ({ known }: { known: Knowledge["parameters"] }) => (
   />
 );
 
-/** The first sentence; the others are folded where the page is narrow. */
+/** The answer, and its numbers, which are folded where the page is narrow. */
 const Said = ({ sentences: [first, ...others] }: { sentences: string[] }) => (
   <>
-    {first}
+    <strong>{first}</strong>
     {others.length > 0 && (
       <details class="others">
         <summary>{count(others.length, "more sentence")}</summary>

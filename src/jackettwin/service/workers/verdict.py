@@ -199,7 +199,10 @@ def known(
             p.name: {"median": float(value), "interval_90": span, "unit": p.unit}
             for p, value, span in zip(u.problem.parameters, median, spans, strict=True)
         },
-        "answers": [{"question": q.title, "answer": " ".join(q.short)} for q in sentences(answers).questions],
+        "answers": [
+            {"question": q.title, "answer": " ".join(dict.fromkeys((*q.answer, *q.short)))}
+            for q in sentences(answers).questions
+        ],
         "budget": [_budget(mode) for mode in answers.modes],
         "sensitivity": _sensitivity(u, median, result),
         "explored": _explored(u, median, result.name),
