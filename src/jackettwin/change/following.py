@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
 
@@ -16,7 +16,6 @@ from jackettwin.watching import (
     PendingChange,
     Watch,
     continues,
-    known_further,
     look_again,
     step,
 )
@@ -58,7 +57,8 @@ def followed(
             looked = (*looked, tell(watch, change, [past_of(one) for one in told[:-1]]))
             told = (*told[:-1], with_later_look(told[-1], looked[-1]))
     if look.change is not None and alarms.pending is not None and continues(alarms.pending, look.change):
-        pending = known_further(pending or alarms.pending, look.change.day)
+        # more of the pending change appeared: its looks begin anew
+        pending = replace(pending or alarms.pending, alarmed=look.change.day, looked=look.change.day)
     elif look.change is not None:
         if told:
             told = (*told[:-1], _before(told[-1], looked, look.change, time))

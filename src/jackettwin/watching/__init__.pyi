@@ -43,7 +43,6 @@ from .watch import (
     Look as Look,
     PendingChange as PendingChange,
     continues as continues,
-    known_further as known_further,
     look_again as look_again,
     start as start,
     step as step,

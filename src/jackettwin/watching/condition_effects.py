@@ -142,16 +142,16 @@ def usual_conditions(
     if len(slopes) > 1 and k:
         same = (source[:, None] == source) & (source >= 0)
         lasting = np.array([_lasting(baseline, one) if one >= 0 else 0.0 for one in source])
-        far = np.sqrt(_tails(slopes))
+        far = _tails(slopes)
         spread = np.where(same, np.atleast_2d(np.cov(slopes.T)) * lasting * np.outer(far, far), 0.0)
     return UsualConditions(limit, spread)
 
 
 def _tails(x: FloatArray) -> FloatArray:
-    """Return k of every regressor: the square of how far its tail is over a normal one's, at least 1."""
+    """Return how far the tail of every regressor is over a normal one's, at least 1, (k,)."""
     off = np.abs(x - x.mean(axis=0))
     far = np.quantile(off, 1.0 - _RARE, axis=0) / np.maximum(np.std(x, axis=0), 1e-12)
-    return np.asarray(np.maximum(far / norm.isf(0.5 * _RARE), 1.0) ** 2)
+    return np.asarray(np.maximum(far / norm.isf(0.5 * _RARE), 1.0))
 
 
 def _lasting(baseline: History, source: int) -> float:

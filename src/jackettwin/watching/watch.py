@@ -271,11 +271,6 @@ def continues(pending: PendingChange, later: Change) -> bool:
     return first.kind == later.kind and bool(weight @ (first.size * later.size) > 0.0)
 
 
-def known_further(pending: PendingChange, day: float) -> PendingChange:
-    """Return a pending change whose looks begin anew, since more of it appeared on a day."""
-    return replace(pending, alarmed=day, looked=day)
-
-
 def _pending(watch: Watch) -> PendingChange:
     """Return the data for estimating a change again: onsets, and the model most likely with the change."""
     blocks = tuple(with_one_model(b, model_of_change(b, watch.begins.log_stake)) for b in watch.blocks)

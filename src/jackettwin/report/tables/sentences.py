@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import expm1, log
 
@@ -60,42 +60,35 @@ def sentences(a: Answers) -> FirstPageWords:
 
     The headline is the answers in the order of their questions; a ground that is not known comes first.
     """
+    right, known, damping, trusted, steps = _answers(a)
     questions = (
-        AnsweredQuestion("Is the model right?", _right(a), *_model(a)),
-        AnsweredQuestion("How stiff and how damped is the ground?", _known(a), *_ground(a)),
-        AnsweredQuestion("Whose damping is it?", _said(a, owner_headline), *owners(a)),
-        AnsweredQuestion("How far can this be trusted?", _trusted(a), (*_trust(a), *_law(a))),
-        AnsweredQuestion("What to do next?", _next(a), *next_steps(a)),
+        AnsweredQuestion("Is the model right?", right, *_model(a)),
+        AnsweredQuestion("How stiff and how damped is the ground?", known, *_ground(a)),
+        AnsweredQuestion("Whose damping is it?", damping, *owners(a)),
+        AnsweredQuestion("How far can this be trusted?", trusted, (*_trust(a), *_law(a))),
+        AnsweredQuestion("What to do next?", steps, *next_steps(a)),
     )
-    lost = bool(a.ground) and all(g.verdict == "unidentified" for g in a.ground) and not misfit_headline(a)
-    told = sorted(questions, key=lambda q: not (lost and q is questions[1]))
-    return FirstPageWords(tuple(line for q in told for line in q.answer), questions)
+    fits = a.fit is None or a.fit.fits
+    lost = fits and bool(a.ground) and all(g.verdict == "unidentified" for g in a.ground)
+    told = (known, right, damping, trusted, steps) if lost else (right, known, damping, trusted, steps)
+    return FirstPageWords(tuple(line for answer in told for line in answer), questions)
 
 
-def _said(a: Answers, headline: Callable[[Answers], str]) -> tuple[str, ...]:
-    """Return the sentence of a headline, none if it is empty or the model does not agree with the data."""
-    return () if misfit_headline(a) else tuple(filter(None, [headline(a)]))
-
-
-def _right(a: Answers) -> tuple[str, ...]:
-    misfit, objections = misfit_headline(a), objection_sentences(a)
-    if misfit:
-        return (misfit[0], *_stiff_enough(a), *filter(None, objections[1:]))
-    return (*filter(None, objections), *_stiff_enough(a))
-
-
-def _known(a: Answers) -> tuple[str, ...]:
-    misfit = misfit_headline(a)
-    return tuple(misfit[1:2]) if misfit else (*_ground_headline(a), *_said(a, feet_headline))
-
-
-def _trusted(a: Answers) -> tuple[str, ...]:
-    return () if misfit_headline(a) else _said(a, condition_headline) or tuple(_identifiability(a))
-
-
-def _next(a: Answers) -> tuple[str, ...]:
-    misfit = misfit_headline(a)
-    return tuple(misfit[2:]) if misfit else _said(a, next_headline)
+def _answers(a: Answers) -> tuple[tuple[str, ...], ...]:
+    """Return the answer to each question; of a model that does not agree with the data, less."""
+    objections = objection_sentences(a)
+    if misfit := misfit_headline(a):
+        disagrees, best, mended = misfit
+        said = [[disagrees, *_stiff_enough(a), *objections[1:]], [best], [], [], [mended]]
+    else:
+        said = [
+            [*objections, *_stiff_enough(a)],
+            [*_ground_headline(a), feet_headline(a)],
+            [owner_headline(a)],
+            [condition_headline(a) or " ".join(_identifiability(a))],
+            [next_headline(a)],
+        ]
+    return tuple(tuple(filter(None, answer)) for answer in said)
 
 
 def span_words(span: Span, unit: str) -> str:
