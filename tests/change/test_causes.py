@@ -184,6 +184,31 @@ def test_a_softening_is_a_share_of_what_the_ground_had(stands: Standing) -> None
     np.testing.assert_allclose(soil.apply(stands).vertical, 0.9 * stands.vertical)
 
 
+def test_growth_is_a_ring_of_its_thickness_and_its_effect_is_known_from_millimetres_on(
+    model: ModelCauses, stands: Standing
+) -> None:
+    """15 mm and 20 cm are rings of these, π(d + t)t; small ones act in proportion, until braces resonate."""
+    (growth,) = [h for h in happenings(stands) if h.name == "marine growth"]
+    (thick,) = [c for c in model.causes if c.name == "marine growth"]
+    s = stands.structure
+    for times, t in ((0.3, 0.015), (4.0, 0.2)):
+        grown = repeated(growth, times)
+        assert grown.per == pytest.approx(t) and np.isclose(thick.bent_at, t).any()
+        more = sum(m.mass_kg for m in grown.apply(stands).structure.masses) - sum(m.mass_kg for m in s.masses)
+        ring = [np.pi * (m.section_start.outer_diameter_m + t) * t * (1325.0 + 1025.0) for m in s.members]
+        ends = [np.array([s.nodes[m.start], s.nodes[m.end]]) for m in s.members]
+        long = [np.linalg.norm(b - a) for a, b in ends]
+        top, low = np.max(ends, axis=1)[:, 2], np.min(ends, axis=1)[:, 2]
+        wet = np.clip((s.sea_level_z_m - low) / np.maximum(top - low, 1e-9), 0.0, 1.0)
+        assert more == pytest.approx(np.sum(np.array(ring) * long * wet), rel=1e-6)
+    sizes = np.array([1e-3, 0.005, 0.015, 0.05])
+    per_m = thick.steps(sizes) / sizes[:, None]
+    first, second = (model.labels.index(name) for name in ("side_side_1", "fore_aft_2"))
+    np.testing.assert_allclose(per_m[:, first], per_m[1, first], rtol=0.1)
+    np.testing.assert_allclose(per_m[0, second], per_m[1, second], rtol=0.2)
+    assert per_m[3, second] < 0.0 and per_m[2, second] > 0.5 * per_m[3, second]  # braces' own have crossed it
+
+
 def test_a_weakened_brace_keeps_seven_tenths_of_its_stiffness_and_all_of_its_mass() -> None:
     structure = read_structure("jacket15")
     typical = Standing(structure, np.full(4, 2.5e9), np.full(4, 2.5e9))

@@ -55,9 +55,6 @@ _ONE_SIZE = 0.1
 """Spread of ln size below which a cause is either present or absent."""
 _SHOWS = 3e-4
 """Change of all ln f, at the usual size, below which a cause is not bet on: it would take years to detect."""
-_SOLVED = (3, 5)
-"""Multiples of an event for which its change is computed; few sizes reach beyond five. Between them,
-cubics have errors of some per cent for a brace or for the splash zone, whose walls are half gone by then."""
 _KEPT = 0.7
 """Smallest share of a mode's kinetic energy among the modes of the whole structure."""
 _SEA_LEVEL = re.compile(r"^(sea|water)_?level(_m)?$|^tide(_m)?$", re.IGNORECASE)
@@ -194,12 +191,11 @@ def model_causes(
             sizes, weights = sizes_about(
                 event.median, event.spread, both_ways=event.both_ways, larger=True, largest=event.largest
             )  # fmt: skip
-            solved = () if event.spread < _ONE_SIZE else [repeated(event, times) for times in _SOLVED]
-            bends = [
-                effect(often, bases[0], modes_after(often, stands[:1], bases[:1])[0], loss[0], zeta)
-                for often in solved
-            ]
-            bend = _bend(event.per, draws[0], bends)
+            per_unit = {event.per: draws[0]}
+            for often in [repeated(event, x) for x in event.solved] if event.spread > _ONE_SIZE else ():
+                then = modes_after(often, stands[:1], bases[:1])[0]
+                per_unit[often.per] = effect(often, bases[0], then, loss[0], zeta)
+            bend = _bend(per_unit)
             if event.or_else is not None:
                 other = replace(event, apply=event.or_else)
                 share = _evenly(len(stands), np.random.default_rng((79, seed)))[:, None]
@@ -333,11 +329,11 @@ def turned(base: Modes, after: Modes) -> FloatArray:
     return out
 
 
-def repeated(event: Happening, times: int) -> Happening:
-    """Return an event repeated several times; its effect is still that of one."""
+def repeated(event: Happening, times: float) -> Happening:
+    """Return an event so many times over, a whole number unless it has ``often``, and its effect per unit."""
 
     def apply(standing: Standing) -> Standing:
-        for _ in range(times):
+        for _ in range(int(times)):
             standing = event.apply(standing)
         return standing
 
@@ -353,22 +349,22 @@ def happened(event: Happening, stands: Sequence[Standing]) -> list[Standing]:
     return [first, *(replace(event.apply(s), structure=first.structure) for s in stands[1:])]
 
 
-def _bend(per: float, once: FloatArray, often: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+def _bend(per_unit: dict[float, FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Return sizes, and the deviation of the change per unit from that of a single event.
 
-    Solved at ``_SOLVED`` times the event; towards zero it goes on as between the event and the next of these.
+    Towards zero it goes on as between the two smallest.
 
     Parameters
     ----------
-    per : size of the event
-    once : change by it per unit
-    often : the same at ``_SOLVED`` times it; none if it has one size
+    per_unit : by size, change by it per unit; first that of a single event, alone if it has one size
     """
-    if not often:
+    once = next(iter(per_unit.values()))
+    if len(per_unit) == 1:
         return np.zeros(0), np.zeros((0, once.size))
-    bends = [np.zeros(once.size), *(change - once for change in often)]
-    none = bends[1] / (1 - _SOLVED[0])
-    return per * np.array([0, 1, *_SOLVED]), np.array([none, *bends])
+    sizes = sorted(per_unit)
+    bends = [per_unit[size] - once for size in sizes]
+    none = bends[0] - (bends[1] - bends[0]) * sizes[0] / (sizes[1] - sizes[0])
+    return np.array([0.0, *sizes]), np.array([none, *bends])
 
 
 def drawn_standings(typical: Standing, stiffness: FloatArray) -> tuple[list[Standing], Standing]:
