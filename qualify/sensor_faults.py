@@ -22,12 +22,14 @@ STRUCTURES: dict[str, Callable[[np.random.Generator], Record]] = {
     "bridges, one `height_m` for all": lambda rng: bridge(rng, height_m=20.0),
     "buildings, sensors beside the axis": building,
 }
+CODES = {"sign": ("sign",), "unit": ("unit", "strong", "weak")}
+"""Beginnings of the codes of findings on a fault; `strong` and `weak` are an rms of another unit."""
 FACTORS = (GRAVITY_M_S2, 1.0 / GRAVITY_M_S2, 1e3, 1e-3, 1e3 / GRAVITY_M_S2)
 
 
 def named(record: Record, fault: str) -> set[str]:
     """Return the channels with a fault, and those that are as likely."""
-    findings = [f for f in assess(record).findings if f.code.startswith(fault)]
+    findings = [f for f in assess(record).findings if f.code.startswith(CODES[fault])]
     doubt = fault == "sign" and not all(f.repaired for f in findings)
     words = {f.subject for f in findings} | {word for f in findings for word in f.text.split()}
     return {name for name in record.channel_names if doubt or name in words}

@@ -31,8 +31,11 @@ if TYPE_CHECKING:
     from jackettwin.records.record import Channel, Record
 
 
-BAND = 0.15
-"""Half width of the band around the strongest line, as a share of its frequency."""
+BAND, BAND_LINES = 0.15, 3
+"""Half width of the band around the strongest line, as a share of its frequency, and at least in lines."""
+WEAK_BAND, WEAK_BAND_LINES = 0.05, 5
+"""The same around a weaker peak, between which and the stronger one motions mix; eleven lines, of which every
+second is independent, are coherent by chance in one of five thousand."""
 MIN_CYCLES = 20
 """Fewest cycles of the band's frequency in the record."""
 CERTAIN = 0.9
@@ -47,6 +50,12 @@ NOISE_COHERENCY = 0.3
 """Absolute coherency that noise alone reaches in a band."""
 SAME_SIZE = 1.25
 """Largest ratio of the amplitudes of two sensors at one place."""
+SECOND_MODE = 3.5
+"""Ratio of the frequencies of the second and the first bending mode of a tower, at least; those of the third
+and the second are closer."""
+MIN_PEAK, FLOOR = 10.0, (1.25, 2.0)
+"""Least power density of a peak over the lowest quarter of that beside it, and the ratios of frequencies
+within which that is. The maximum of five averaged lines of smooth noise is 4 times that quarter."""
 LEAST_USED = 0.5
 """Least mean weight of the samples: with less the few lines of a band are coherent by chance."""
 PARALLEL = 0.98
@@ -62,7 +71,7 @@ class SharedMotion:
     rows : list of int
         Rows of the record.
     peak : float
-        Frequency of the strongest line of displacement.
+        Line at which channels are compared: the strongest of displacement, or of a tower's lowest mode.
     size : (n,) array
         Amplitude around that line.
     coherency : (n, n) array
@@ -111,7 +120,7 @@ def parallel_groups(record: Record, y: FloatArray) -> Iterator[ParallelChannels]
         tower = [k for k, place in enumerate(places) if isinstance(place, float)]
         if len({places[k] for k in tower}) > 1:
             heights = [place for k in tower if isinstance(place := places[k], float)]
-            yield ParallelChannels(_together(rows, tower, spectra), heights)
+            yield ParallelChannels(_together(rows, tower, spectra, tower=True), heights)
 
 
 def reversed_channels(record: Record, groups: Sequence[ParallelChannels]) -> dict[str, bool]:
@@ -163,10 +172,40 @@ def strongest_line(spectra: ComplexArray) -> int:
     return int(k[np.argmax(np.convolve(common, np.ones(5), mode="same"))])
 
 
-def around(spectra: ComplexArray, peak: float) -> ComplexArray:
+def strongest_peak(spectra: ComplexArray) -> tuple[int, ComplexArray]:
+    """Return the strongest line of displacement and the lines around it."""
+    peak = strongest_line(spectra)
+    return peak, around(spectra, peak)
+
+
+def lowest_shared_peak(spectra: ComplexArray) -> tuple[int, ComplexArray]:
+    """Return the lowest clear peak at which all channels are coherent, and the lines around it.
+
+    It counts if it is as far below the strongest line of acceleration as the first mode of a tower is
+    below the second; otherwise it is the strongest line of displacement, of a second mode or of noise maybe.
+
+    Parameters
+    ----------
+    spectra : (n_channels, n_lines) complex
+        Transforms of accelerations, more than ``MIN_CYCLES`` lines.
+    """
+    power = np.array([np.convolve(np.abs(row) ** 2, np.ones(5), mode="same") for row in spectra])
+    common = np.sum(power / np.maximum(power.mean(axis=1, keepdims=True), np.finfo(float).tiny), axis=0)
+    for k in range(MIN_CYCLES, int(np.argmax(common) / SECOND_MODE)):
+        if common[k] < common[int(k / (1.0 + BAND)) : int(k * (1.0 + BAND)) + 1].max():
+            continue
+        beside = np.r_[int(k / FLOOR[1]) : int(k / FLOOR[0]), int(k * FLOOR[0]) : int(k * FLOOR[1])]
+        near = around(spectra, k, WEAK_BAND, WEAK_BAND_LINES)
+        clear = common[k] > MIN_PEAK * np.quantile(common[beside], 0.25)
+        if clear and np.abs(band_coherency(near)).min() > CERTAIN:
+            return k, near
+    return strongest_peak(spectra)
+
+
+def around(spectra: ComplexArray, peak: float, share: float = BAND, least: int = BAND_LINES) -> ComplexArray:
     """Return the lines of the narrow band around a line."""
     k = np.arange(spectra.shape[1])
-    return spectra[:, np.abs(k - peak) <= max(BAND * peak, 3)]
+    return spectra[:, np.abs(k - peak) <= max(share * peak, least)]
 
 
 def against_majority(coherency: FloatArray) -> tuple[list[int], bool]:
@@ -229,13 +268,14 @@ def _one_place(places: list[str | float | None]) -> Iterator[list[int]]:
             yield group
 
 
-def _together(rows: list[int], chosen: list[int], all_spectra: ComplexArray) -> SharedMotion:
+def _together(
+    rows: list[int], chosen: list[int], all_spectra: ComplexArray, *, tower: bool = False
+) -> SharedMotion:
     picked, spectra = [rows[k] for k in chosen], all_spectra[chosen]
-    peak = strongest_line(spectra)
+    peak, inside = lowest_shared_peak(spectra) if tower else strongest_peak(spectra)
     n_bands = max(int(np.log((spectra.shape[1] - 1) / MIN_CYCLES) / np.log(WIDTH)), 0)
     edges = (MIN_CYCLES * WIDTH ** np.arange(n_bands + 1)).astype(np.int64)
     bands = [((a + b) / 2.0, band_coherency(spectra[:, a:b])) for a, b in pairwise(edges)]
-    inside = around(spectra, peak)
     size = np.linalg.norm(inside, axis=1)
     return SharedMotion(picked, float(peak), size, band_coherency(inside), bands)
 
