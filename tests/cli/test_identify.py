@@ -159,7 +159,9 @@ def test_a_report_under_another_name_than_that_of_a_page_is_refused(tmp_path: Pa
     assert code == 2 and "'modes.txt' is not the name of a page" in err and not page.exists()
 
 
-def test_modes_are_laid_beside_a_structure(tmp_path: Path) -> None:
+def test_modes_are_laid_beside_a_structure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The record is read once, though shapes in UFF need its directions before the computation."""
+    monkeypatch.setattr("jackettwin.records.read_record_pieces", None)
     record, out = str(RECORDS / "kv_U12_s311.parquet"), tmp_path / "m.uff"
     code, text, _ = run(record, "--quick", "--model", "jacket15", "--json", "--out", str(out))
     assert code == 0 and out.read_text("ascii").count("\n    55\n") == len(json.loads(text)["modes"])

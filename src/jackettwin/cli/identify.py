@@ -146,17 +146,18 @@ def identify_command(
     if merge == "preger":
         _refuse_preger(len(files), {"--report": report, "--picks": picks_file})
     how: dict[str, Any] = {"picks": picks, "defaults": _unsaid(sample_rate, unit, gain, zone)}
-    _refuse_shapes(out, files[0], how["defaults"])
     for path in (out, report):
         if path is not None:
             check_room(path)
     with tempfile.TemporaryDirectory(prefix="jackettwin-") as passing:
         if not whole and merge == "poser":
             files = _without_long(files, Path(passing) / "pieces", how["defaults"])
+        _refuse_shapes_of_first(out, files, how["defaults"])
         if merge == "preger":
             document, show = _setups(files, settings, how["defaults"]), show_one
         elif len(files) == 1:
             how |= {"keep": cache.keeping(fresh=fresh), "whole": whole}
+            how["refuse"] = partial(_refuse_shapes, out)
             document, show = _one(files[0], settings, how, compare, report), show_one
         else:
             keep = _keep(out, len(files), fresh=fresh) or cache.kept_in(Path(passing))
@@ -425,15 +426,22 @@ def _refuse_format(out: Path | None) -> None:
         export_modes({}, out)
 
 
-def _refuse_shapes(out: Path | None, file: Path, defaults: FileDefaults) -> None:
-    """Raise an error if the first record has no directions, which UFF needs, before the computation."""
-    from jackettwin.records import read_record_pieces
+def _refuse_shapes(out: Path | None, record: Record) -> None:
+    """Raise an error if a record has no directions, which UFF needs."""
     from jackettwin.study.many_records.shapes_uff import pointing
 
-    if out is None or out.suffix.lower() != ".uff":
+    if out is not None and out.suffix.lower() == ".uff":
+        pointing({c.name: {"quantity": c.quantity, "direction": c.direction} for c in record.channels})
+
+
+def _refuse_shapes_of_first(out: Path | None, files: Sequence[Path], defaults: FileDefaults) -> None:
+    """Raise an error if the first of many records has no directions, before the computation."""
+    from jackettwin.records import read_record_pieces
+
+    if out is None or out.suffix.lower() != ".uff" or len(files) < 2:
         return
     piece = None
     with suppress(InputError):  # what cannot be read is refused where it is identified
-        piece = next(read_record_pieces(file, defaults=defaults), None)
+        piece = next(read_record_pieces(files[0], defaults=defaults), None)
     if piece is not None:
-        pointing({c.name: {"quantity": c.quantity, "direction": c.direction} for c in piece.channels})
+        _refuse_shapes(out, piece)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -89,11 +89,14 @@ def examine_file(
     compare: bool = False,
     keep: Keep = NOT_KEPT,
     whole: bool = False,
+    refuse: Callable[[Record], None] | None = None,
 ) -> Examination:
     """Read and examine one record; ``defaults`` gives rate and unit of a file that lacks them.
 
     Parameters
     ----------
+    refuse : callable, optional
+        Is given the record before it is examined; may raise an error.
     whole : bool
         Whether a file of hours is read in pieces, each at the rate that its modes need.
 
@@ -104,6 +107,8 @@ def examine_file(
     """
     long = read_whole(path, settings, defaults) if whole else None
     record = read_record(path, defaults) if long is None else long.record
+    if refuse is not None:
+        refuse(record)
     with located(file=path):
         return examine(record, settings, places=places, picks=picks, compare=compare, keep=keep, long=long)
 

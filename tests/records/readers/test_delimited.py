@@ -80,6 +80,28 @@ def test_a_clock_or_count_of_another_name_is_no_channel(tmp_path: Path) -> None:
     )
     assert counted.channel_names == ("acc_x_g",)
     assert "column Sample counts rows" in counted.metadata["remarks"][0]
+
+
+@pytest.mark.parametrize(
+    ("heads", "time", "left"),
+    [
+        ("time,Time_UTC", "{s},2026-03-05T10:00:0{s}Z", "time"),
+        ("Time_UTC,t", "2026-03-05T10:00:0{s}Z,{s}", "t"),
+        ("nr,elapsed", "{n},{s}", "nr"),
+        ("index,time_ms", "{k},{n}", "index"),
+    ],
+)
+def test_a_second_clock_or_a_count_is_told_and_no_channel(
+    heads: str, time: str, left: str, tmp_path: Path
+) -> None:
+    """Ten rows a second; ``nr`` counts hundreds, as milliseconds do."""
+    cells = [time.format(k=k, n=100 * k, s=f"{k / 10:.1f}") for k in range(40)]
+    record = read_text(
+        f"{heads},acc_x_g\n" + "".join(f"{c},{k % 3}\n" for k, c in enumerate(cells)), tmp_path
+    )
+    assert record.channel_names == ("acc_x_g",)
+    assert record.sample_rate_hz == pytest.approx(10.0)
+    assert any(f"left out: {left}" in remark for remark in record.metadata["remarks"])
     # pandas writes the index of a table first, without a name
     indexed = read_text(
         ",time_s,acc_x_g\n" + "".join(f"{k},{0.2 * k:.1f},{k % 3}\n" for k in range(8)), tmp_path
@@ -168,7 +190,7 @@ def test_date_and_time_in_two_columns_are_one_stamp(tmp_path: Path) -> None:
         assert record.start_utc is not None
         assert record.start_utc.isoformat() == f"2025-03-17T{hour}:59:59.950000+00:00"
         assert record.sample_rate_hz == 20.0
-        np.testing.assert_allclose(record.data[1] / 9.80665, np.arange(3) + 0.5, rtol=1e-15)
+        np.testing.assert_allclose(record.data[0] / 9.80665, np.arange(3) + 0.5, rtol=1e-15)
 
 
 def test_a_time_of_day_alone_gives_the_rate_and_no_start(tmp_path: Path) -> None:

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 TIME_NAMES = (
     *("time", "t", "timestamp", "time_utc", "datetime", "date_time", "times", "tid", "zeit", "zeitstempel"),
-    *("datum_zeit", "datum", "uhrzeit"),
+    *("datum_zeit", "datum", "uhrzeit", "elapsed", "elapsed_time", "unix_time"),
 )
 UNSTATED_RATES_HZ = (0.1, 2e4)
 """Sample rates of records of vibrations whose time column has no unit; others are not in seconds."""
@@ -109,9 +109,10 @@ def table_from_columns(
 ) -> ReadTable:
     """Return a table of equally long columns.
 
-    The first column is the time if its name says so, or if it climbs evenly or has no name and does not
-    just count rows, else the second if its name says so; a column of datetimes or of times of day is the time
-    wherever it stands. Columns without numbers, or that count rows, are left out and named in a remark.
+    The first column is the time if its name says so; if it climbs evenly, a later one that does so too and is
+    named a time; else the first if it climbs evenly or has no name and does not just count rows. A column of
+    datetimes or of times of day is the time wherever it stands. Columns without numbers, that count rows, or
+    that are a clock or a count beside the time are left out and named in a remark.
 
     Raises
     ------
@@ -136,11 +137,16 @@ def table_from_columns(
     counted = 0 if time is None and counts else None
     kept = [i for i in range(len(names)) if i not in (time, counted) and names[i]]
     kept = [i for i in kept if columns[i].dtype.kind == "f"]
-    left_out = [name for i, name in enumerate(names) if name and i not in (time, counted, *kept)]
+    clocks = [i for i in kept if time is not None and _is_clock(names[i], columns[i], channels)]
+    kept = [i for i in kept if i not in clocks] or kept
+    left_out = [name for i, name in enumerate(names) if name and i not in (time, counted, *clocks, *kept)]
     if left_out:
         remarks.append(f"columns without numbers are left out: {', '.join(left_out)}")
     if counted is not None and names[counted]:
         remarks.append(f"column {names[counted]} counts rows and is left out")
+    if time is not None and clocks and clocks != kept:
+        also = ", ".join(names[i] for i in clocks)
+        remarks.append(f"time is column {names[time]}; also climbing evenly, and left out: {also}")
     if time is not None and names[time] and columns[time].dtype.kind == "f" and not is_time(names[time]):
         remarks.append(f"column {names[time]} climbs evenly and is taken for the time in s")
     words = [
@@ -173,9 +179,11 @@ def _time_column(
         return dated[0]
     if not names:
         return None
-    # a data frame's index, written beside its columns, counts rows
-    if len(names) > 1 and _counts_rows(columns[0]) and not is_time(names[0]) and is_time(names[1]):
-        return 1 if columns[1].dtype.kind == "f" else None
+    # a data frame's index, or a logger's count of samples, before the time
+    if not is_time(names[0]) and _is_clock(names[0], columns[0], channels):
+        named = (i for i, name in enumerate(names) if is_time(name) and climbs_evenly(columns[i]))
+        if (called := next(named, None)) is not None:
+            return called
     numeric, called_time = columns[0].dtype.kind == "f", is_time(names[0])
     if called_time and not numeric:
         refuse_ambiguous(str(columns[0][0]) if len(columns[0]) else "", names[0])
@@ -194,6 +202,11 @@ def _is_channel(name: str, channels: Mapping[str, ChannelEntry]) -> bool:
     """Tell whether its unit, quantity, place or direction says that a column is no clock nor count."""
     measured = guess_quantity(name, "") != "other" or names_other(name)
     return name in channels or measured or read_name(name) != Reading()
+
+
+def _is_clock(name: str, column: npt.NDArray[Any], channels: Mapping[str, ChannelEntry]) -> bool:
+    """Tell whether a column is a clock or a count by its values, and not a channel by its name."""
+    return climbs_evenly(column) and (is_time(name) or not _is_channel(name, channels))
 
 
 def climbs_evenly(column: npt.NDArray[Any]) -> bool:
