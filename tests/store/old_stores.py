@@ -50,4 +50,4 @@ def documents(schema: str) -> list[str]:
     with closing(sqlite3.connect(":memory:")) as connection:
         connection.deserialize(_content(schema))
         found = connection.execute("select document from observations order by record_id").fetchall()
-        return [document for (document,) in found]
+        return [bytes(document).decode() if schema > "0100" else document for (document,) in found]

@@ -22,14 +22,17 @@ from jackettwin.store import backup, database as module, open_database, reading,
 
 NOW = datetime(2025, 3, 1, 12, tzinfo=UTC)
 MIGRATIONS = Path(module.__file__).with_name("migrations")
-RELEASED = {"0100_initial.py": "17d3a6aed6d1a270cf0bdfcb0335e61bbb664104849f32d2576a0eff7502b203"}
+RELEASED = {
+    "0100_initial.py": "17d3a6aed6d1a270cf0bdfcb0335e61bbb664104849f32d2576a0eff7502b203",
+    "0101_rights_and_alerts.py": "7586106d1360c5c7d65249c3d832c02ad5bb6aa09268c68ac33aa99816e457d1",
+}
 """SHA-256 of every migration that stores have run. Whatever changes since is a migration of its own."""
 NEXT = """
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0102"
-down_revision = "0101"
+revision = "0103"
+down_revision = "0102"
 
 
 def upgrade() -> None:
@@ -61,10 +64,10 @@ def old(url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[s
 
 def with_next_migration(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copytree(MIGRATIONS, folder / "migrations", ignore=shutil.ignore_patterns("__pycache__"))
-    (folder / "migrations" / "versions" / "0102_next.py").write_text(NEXT)
+    (folder / "migrations" / "versions" / "0103_next.py").write_text(NEXT)
     monkeypatch.setattr(module, "_MIGRATIONS", folder / "migrations")
     for user in (module, backup):
-        monkeypatch.setattr(user, "SCHEMA_VERSION", "0102")
+        monkeypatch.setattr(user, "SCHEMA_VERSION", "0103")
 
 
 def windows(engine: Engine, schema: str | None = None) -> list[str]:
@@ -97,9 +100,9 @@ def test_it_is_migrated_and_a_copy_is_kept(old: str, tmp_path: Path) -> None:
         with reading(engine) as connection:
             assert [row.name for row in connection.execute(tables.assets.select())] == ["wtg"]
     if old.startswith("sqlite"):
-        copy, schema = f"sqlite:///{tmp_path / 'twin.schema-0101.sqlite'}", None
+        copy, schema = f"sqlite:///{tmp_path / 'twin.schema-0102.sqlite'}", None
     else:
-        copy, schema = old, "schema_0101"
+        copy, schema = old, "schema_0102"
     engine = open_database(copy, migrate=False)
     assert "n_late" not in windows(engine, schema)
     with reading(engine) as connection:

@@ -7,6 +7,8 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.runtime.migration import MigrationContext
 from sqlalchemy import MetaData, create_engine, select
 from tests.service.servers import opened
 from tests.store.conftest import fresh
@@ -26,14 +28,17 @@ def test_a_store_is_kept_of_every_migration_that_was_released() -> None:
 @pytest.mark.parametrize("schema", schemas())
 def test_an_old_store_says_what_it_said(schema: str, tmp_path: Path) -> None:
     store = lay_out(schema, tmp_path / "store")
+    level, share = (95, NORMAL_90 / NORMAL_95) if schema == "0100" else (90, 1.0)
+    named = f"damping_ratio, damping_ratio_low_{level}, frequency_std_hz / frequency_hz"
     with closing(sqlite3.connect(store / "jackettwin.sqlite")) as old:
-        wider = old.execute("select damping_ratio, damping_ratio_low_95 from modes order by id").fetchall()
+        said = old.execute(f"select {named} from modes order by id").fetchall()
     with opened(sqlite_url(store)) as database:
         with reading(database) as connection:
-            low = connection.scalars(select(tables.modes.c.damping_ratio_low_90).order_by(tables.modes.c.id))
-            assert wider and low.all() == pytest.approx(
-                [ratio * (end / ratio) ** (NORMAL_90 / NORMAL_95) for ratio, end in wider], rel=1e-12
-            )
+            modes = tables.modes.c
+            now = select(modes.damping_ratio_low_90, modes.frequency_relative_std).order_by(modes.id)
+            low, relative = zip(*connection.execute(now), strict=True)
+            assert low == pytest.approx([ratio * (end / ratio) ** share for ratio, end, _ in said], rel=1e-12)
+            assert relative == tuple(std for _, _, std in said) and None not in relative
             kept = connection.execute(
                 select(tables.observations.c.document).order_by(tables.observations.c.record_id)
             )
@@ -86,6 +91,21 @@ def test_a_backup_of_it_restores_into_this_version(tmp_path: Path) -> None:
                     assert one.execute(rows).all() == two.execute(rows).all()
 
 
+def test_a_store_of_an_unreleased_version_has_the_column_already(tmp_path: Path) -> None:
+    """Versions between 0.1.0 and the next one had it in 0101, filled for what came since."""
+    store = lay_out("0101", tmp_path / "store")
+    with closing(sqlite3.connect(store / "jackettwin.sqlite")) as old, old:
+        old.execute("alter table modes add column frequency_relative_std float")
+        least_known = "asset, model_hash, frequency_relative_std, time_utc"
+        old.execute(f"create index ix_modes_least_known on modes ({least_known})")
+        old.execute("update modes set frequency_relative_std = frequency_std_hz / frequency_hz where id > 3")
+    with opened(sqlite_url(store)) as database, reading(database) as connection:
+        modes = tables.modes.c
+        rows = select(modes.frequency_relative_std, modes.frequency_std_hz / modes.frequency_hz)
+        assert all(kept == std for kept, std in connection.execute(rows).all())
+        assert not compare_metadata(MigrationContext.configure(connection), tables.metadata)
+
+
 def test_who_took_note_of_an_alarm_is_known_whatever_its_key(tmp_path: Path) -> None:
     """0.1.0 kept keys as long as they were; they are shortened since, and must still match."""
     store = lay_out("0100", tmp_path / "store")
@@ -102,18 +122,19 @@ def test_who_took_note_of_an_alarm_is_known_whatever_its_key(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("kind", ["sqlite", "postgresql"])
+@pytest.mark.parametrize("schema", schemas())
 def test_a_backup_that_an_old_version_wrote_is_restored(
-    kind: str, tmp_path: Path, request: pytest.FixtureRequest
+    kind: str, schema: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     """Its tables are those of then: some there are no more, some there were not yet."""
-    written = _backup_of("0100", tmp_path)
+    written = _backup_of(schema, tmp_path)
     url = sqlite_url(tmp_path) if kind == "sqlite" else fresh(request.getfixturevalue("postgresql_url"))
     with opened(url) as database:
         counts = backup.restore(written, database, tmp_path / "new")
-        assert counts["acknowledgements"] == 1
+        assert counts["acknowledgements" if schema == "0100" else "handling"] == 1
         with reading(database) as connection:
             kept = connection.scalars(select(tables.observations.c.document))
-            assert sorted(kept) == sorted(documents("0100"))
+            assert sorted(kept) == sorted(documents(schema))
             assert results.open_alarms(connection) == {"wtg_01": []}
 
 

@@ -31,7 +31,7 @@ from sqlalchemy.types import TypeDecorator
 
 from jackettwin.store import columns
 
-FIRST_SCHEMA, SCHEMA_VERSION = "0100", "0101"
+FIRST_SCHEMA, SCHEMA_VERSION = "0100", "0102"
 """Migrations of 0.1.0 and of this version: databases between them are migrated when opened."""
 
 

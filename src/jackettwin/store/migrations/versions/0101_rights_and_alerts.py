@@ -74,12 +74,6 @@ def upgrade() -> None:
     op.create_index("ix_alerts_due", "alerts", ["state", "due_utc"])
     op.create_index("ix_work_fair", "work", ["state", "kind", "priority", "asset", "id"])
     _intervals("95", "90", TO_90)
-    op.add_column("modes", sa.Column("frequency_relative_std", sa.Float()))
-    op.execute(
-        "update modes set frequency_relative_std = frequency_std_hz / frequency_hz where frequency_hz > 0"
-    )
-    least_known = ["asset", "model_hash", "frequency_relative_std", "time_utc"]
-    op.create_index("ix_modes_least_known", "modes", least_known)
     if op.get_bind().dialect.name == "postgresql":
         op.execute("alter table observations alter document type bytea using convert_to(document, 'UTF8')")
     else:
@@ -133,9 +127,6 @@ def downgrade() -> None:
         sa.Column("comment", sa.Text(), nullable=False),
     )
     op.drop_index("ix_work_fair", "work")
-    op.drop_index("ix_modes_least_known", "modes")
-    with op.batch_alter_table("modes") as modes:
-        modes.drop_column("frequency_relative_std")
     _intervals("90", "95", 1.0 / TO_90)
     for table in ("alerts", "handling", "posts", "mode_days", "asset_groups"):
         op.drop_table(table)
