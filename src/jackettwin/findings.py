@@ -384,6 +384,11 @@ CATALOGUE: dict[str, Kind] = {
         "lies at half or twice the frequency of another peak, and neither falls off as slowly as that of a "
         "mode: both may be orders of a rotor; add the rotor's speed as a channel [rpm] or condition",
     ),
+    "turns": Kind(
+        "warning",
+        "the directions of this pair turn within the record, as with a yawing nacelle: shapes and damping "
+        "are of neither; add the yaw as a channel [deg], or cut the record where it turns",
+    ),
     "steady_envelope": Kind(
         "warning",
         "its amplitude varies less than that of a mode of such low damping: it may be a tone, or an order of "

@@ -27,6 +27,7 @@ from jackettwin.identification.selection.choice import chosen_modes, clear_dampi
 from jackettwin.identification.selection.light_damping import with_damping_likelihoods
 from jackettwin.identification.selection.picks import left_out, picked_clusters, with_verdicts
 from jackettwin.identification.selection.screening import evidence
+from jackettwin.identification.selection.turning import turning_doubted
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.status import ModeStatus
 from jackettwin.processes import on_one_blas_thread
@@ -179,6 +180,8 @@ def _chosen(
     chosen = chosen_modes(judged, tones, ready, settings, None if known is None else known.lines)
     if known is not None:
         chosen = screened_choice(chosen, judged, known, tones=tones, rescue=rescue)
+        y, rate = tones.clean, ready.settings.sample_rate_hz
+        chosen = replace(chosen, modes=turning_doubted(chosen.modes, y, rate))
     return _with_likelihoods(chosen, tones.clean, ready, settings), judged
 
 

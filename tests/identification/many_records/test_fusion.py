@@ -14,6 +14,7 @@ from jackettwin.identification.many_records.fusion import Average, average, rand
 from jackettwin.identification.many_records.sightings import Sightings
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import simulate
+from jackettwin.intervals import NORMAL_90
 from jackettwin.study.many_records.document import fused_mode_document
 
 RNG = np.random.default_rng
@@ -42,6 +43,18 @@ def test_scatter_beyond_the_records_own_uncertainty_is_found(rng):
     assert between == pytest.approx(0.25, rel=0.12)
     assert variance == pytest.approx(0.26 / 2000, rel=0.12)
     assert abs(mean) < 4 * np.sqrt(variance)
+
+
+@pytest.mark.parametrize(("scatter", "low", "high"), [(0.0, 0.88, 0.95), (5.0, 0.86, 0.93)])
+def test_intervals_of_four_records_hold_the_mean_whether_these_scatter_or_not(
+    scatter: float, low: float, high: float, rng
+) -> None:
+    """Nominal 90 %, ± 3.5 standard errors of 700 sets and, without scatter, what cannot be excluded."""
+    held = 0
+    for values in rng.normal(0.0, np.hypot(1.0, scatter), (700, 4)):
+        mean, variance, _ = random_effects(values, np.ones(4))
+        held += abs(mean) < NORMAL_90 * np.sqrt(variance)
+    assert low < held / 700 < high
 
 
 def test_a_close_pair_is_fused_apart_and_its_intervals_hold_the_truth(results):
