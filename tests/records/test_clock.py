@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.records.clocks.grid import between_ticks, regularise
+from jackettwin.records.clocks.grid import between_ticks, regularise, without_hours
 
 
 def test_perfect_stamps_change_nothing(rng: np.random.Generator) -> None:
@@ -44,6 +44,29 @@ def test_jitter_is_interpolated_away(rng: np.random.Generator) -> None:
     error = out[0] - np.sin(2 * np.pi * f * grid)
     assert np.nanmax(np.abs(error)) < 5e-3
     assert np.isnan(out).mean() < 0.1
+
+
+def test_jitter_of_half_a_step_leaves_no_gaps_where_no_stamp_is_lost(rng: np.random.Generator) -> None:
+    """One of seven samples was lost at steps longer than one and a half."""
+    t = (np.arange(6000) + rng.uniform(-0.4, 0.4, 6000)) / 20.0
+    out, clock = regularise(t, np.sin(t)[None, :])
+    assert np.isfinite(out).all() and clock.missing == 0
+    kept = np.delete(np.arange(6000), [50, 51, 52, 2000, 2001, 2002])
+    assert np.isnan(regularise(t[kept], np.sin(t[kept])[None, :])[0]).sum() >= 6
+
+
+@pytest.mark.parametrize(
+    ("gap_s", "closed"), [(3600.0, True), (7200.0, True), (3599.0, False), (2400.0, False)]
+)
+def test_a_clock_put_on_by_full_hours_loses_no_samples(gap_s: float, closed: bool) -> None:
+    t = np.arange(600) / 20.0
+    shown, put_on = without_hours(np.where(t < 20.0, t, t + gap_s))
+    assert (put_on is not None) == closed
+    if closed:
+        np.testing.assert_allclose(shown, t, atol=1e-9)
+        assert put_on == (pytest.approx(19.95), gap_s)
+    # a logger that is on for ten seconds of every hour
+    assert without_hours(np.concatenate([t[:200], t[:200] + 3610.0, t[:200] + 7220.0]))[1] is None
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray, Int64Array, IntArray
+from jackettwin.constants import HOUR_S
 from jackettwin.errors import InputError
 from jackettwin.records.record import RATES_HZ
 
@@ -18,6 +19,8 @@ MAX_GRID_POINTS = 20
 """Most grid points per stamp; beyond, the stamps contain a jump, not a gap."""
 MAX_DISORDER = 0.05
 """Largest share of repeated or backward stamps in an accepted time column."""
+MAX_SHARED_S = 60.0
+"""Longest usual step of stamps whose clock may have been put on by an hour [s]."""
 MIN_TICKS = 10
 """Fewest ticks of a coarse clock that show how many samples share one."""
 
@@ -83,9 +86,40 @@ def regularise(
         out = np.full((len(y), n_grid), np.nan)
         out[:, index] = y
     else:
-        out = _interpolate(np.arange(n_grid) / rate + offset, t, y, 1.5 / rate)
+        # where every grid point has its stamp, no long step is a gap, only jitter
+        longest = 1.5 / rate if len(np.unique(index)) < n_grid else np.inf
+        out = _interpolate(np.arange(n_grid) / rate + offset, t, y, longest)
     dropped = int(len(times_s) - len(t))
     return out, Clock(rate, jitter, n_grid - len(np.unique(index)), dropped)
+
+
+def without_hours(times_s: FloatArray) -> tuple[FloatArray, tuple[float, float] | None]:
+    """Return stamps less the full hours by which their clock is once put on, and when and how many, both [s].
+
+    To summer time, or another zone: before and after the jump, samples follow each other as everywhere else.
+
+    Examples
+    --------
+    >>> t = np.arange(200) / 10.0
+    >>> back, (when, by) = without_hours(np.where(t < 5.0, t, t + 3600.0))
+    >>> bool(np.allclose(back, t)), round(when, 1), by
+    (True, 4.9, 3600.0)
+    >>> without_hours(np.where(t < 5.0, t, t + 3000.0))[1] is None
+    True
+    """
+    steps = np.diff(times_s)
+    if len(steps) < 3 or not np.isfinite(steps).all():
+        return times_s, None
+    usual = float(np.median(steps))
+    long = np.flatnonzero(steps > 0.5 * HOUR_S)
+    if len(long) != 1 or usual <= 0.0 or usual > MAX_SHARED_S:
+        return times_s, None
+    hours_s = HOUR_S * round(float(steps[long[0]] - usual) / HOUR_S)
+    if hours_s == 0.0 or abs(float(steps[long[0]]) - usual - hours_s) > 0.5 * usual:
+        return times_s, None
+    at = int(long[0])
+    later = np.where(np.arange(len(times_s)) > at, hours_s, 0.0)
+    return times_s - later, (float(times_s[at] - times_s[0]), hours_s)
 
 
 def between_ticks(times_s: FloatArray) -> FloatArray | None:

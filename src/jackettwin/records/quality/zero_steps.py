@@ -1,13 +1,15 @@
 r"""Steps in the zero of a channel, from one level to another.
 
 The sum :math:`S_k = \sum_{j \le k} (y_j - \bar y)` of a vibration stays small, as its velocity does.
-A step of its zero by a at sample k adds a triangle of height a k (n − k)/n. A step is accepted if it explains
-most of the slow motion, which neither a drift nor a few slow oscillations do.
+A step of its zero by a at sample k adds a triangle of height a k (n − k)/n. One to three steps are accepted
+if they explain most of the slow motion, which they do of neither a drift nor a few slow oscillations.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -19,9 +21,9 @@ from jackettwin.signals import of_fast_length
 
 SLOW = 20
 """Cycles in the record below which motion is slow."""
-EXPLAINED = 0.85
-"""Smallest share of the slow power that a step must explain;
-the best step explains 0.75 of a linear drift."""
+MOST_STEPS, UNEXPLAINED = 3, 0.6
+"""Most steps of a channel, and the share of the slow power that k steps may leave, times (k + 1)²: the best k
+steps leave 1/(k + 1)² of a linear drift."""
 MIN_STEP_SIZE = 0.5
 """Smallest size of a step over the rms of the rest."""
 END_SHARE = 0.05
@@ -39,8 +41,8 @@ class ZeroStep:
     over_rms: float
 
 
-def zero_step(y: FloatArray) -> ZeroStep | None:
-    """Return the step of the zero of a channel, None if it has none.
+def zero_steps(y: FloatArray) -> tuple[ZeroStep, ...]:
+    """Return the steps of the zero of a channel, in the order of time; none if a drift explains as much.
 
     Parameters
     ----------
@@ -51,37 +53,56 @@ def zero_step(y: FloatArray) -> ZeroStep | None:
     --------
     >>> y = np.sin(0.3 * np.arange(3000.0))
     >>> y[1000:] += 2.0
-    >>> step = zero_step(y)
-    >>> abs(step.at - 1000) < 10, round(step.by, 1)
-    (True, 2.0)
+    >>> y[2000:] -= 3.0
+    >>> first, second = zero_steps(y)
+    >>> abs(first.at - 1000) < 10, round(first.by, 1), abs(second.at - 2000) < 10, round(second.by, 1)
+    (True, 2.0, True, -3.0)
     """
     n, there = len(y), np.isfinite(y)
     if n < 10 * SLOW or there.mean() < 0.5:
-        return None
+        return ()
     x = bridge(y)
     x = x - x.mean()
+    slow = _slow_power(x)
+    ends = [0, n]
+    for number in range(1, MOST_STEPS + 1):
+        splits = [_best_split(x, a, b, round(END_SHARE * n)) for a, b in pairwise(ends)]
+        ends = sorted([*ends, max(splits)[1]])
+        levels = np.array([x[a:b].mean() for a, b in pairwise(ends)])
+        rest = x - np.repeat(levels, np.diff(ends))
+        rms, by = float(rest.std()), np.diff(levels)
+        if rms == 0.0 or np.abs(by).min() < MIN_STEP_SIZE * rms:
+            return ()
+        if _slow_power(rest) <= UNEXPLAINED / (number + 1) ** 2 * slow:
+            return tuple(
+                ZeroStep(at, float(one), abs(float(one)) / rms)
+                for at, one in zip(ends[1:-1], by, strict=True)
+            )
+    return ()
+
+
+def _best_split(x: FloatArray, start: int, stop: int, least: int) -> tuple[float, int]:
+    """Return by how much one step within a stretch reduces the sum of squares at most, and its sample."""
+    own, n = x[start:stop] - x[start:stop].mean(), stop - start
     k = np.arange(1, n)
-    inside = (k > END_SHARE * n) & (k < (1.0 - END_SHARE) * n)
-    # reduction of the sum of squares by a step at each sample
-    gain = np.where(inside, np.cumsum(x)[:-1] ** 2 * n / (k * (n - k)), 0.0)
-    at = int(k[np.argmax(gain)])
-    by = float(x[at:].mean() - x[:at].mean())
-    rest = x - np.where(np.arange(n) >= at, by, 0.0)
-    rms = float(rest.std())
-    if rms == 0.0 or abs(by) < MIN_STEP_SIZE * rms:
-        return None
-    slow = [float(np.sum(np.abs(np.fft.rfft(of_fast_length(s - s.mean()))[1:SLOW]) ** 2)) for s in (x, rest)]
-    if slow[1] > (1.0 - EXPLAINED) * slow[0]:
-        return None
-    return ZeroStep(at, by, abs(by) / rms)
+    inside = (k > least) & (k < n - least)
+    gain = np.where(inside, np.cumsum(own)[:-1] ** 2 * n / (k * (n - k)), 0.0)
+    best = int(np.argmax(gain))
+    return float(gain[best]), start + best + 1
 
 
-def without_step(y: FloatArray, step: ZeroStep, sample_rate_hz: float) -> FloatArray:
-    """Return a channel with its step removed and samples around it missing."""
+def _slow_power(x: FloatArray) -> float:
+    return float(np.sum(np.abs(np.fft.rfft(of_fast_length(x - x.mean()))[1:SLOW]) ** 2))
+
+
+def without_steps(y: FloatArray, steps: Sequence[ZeroStep], sample_rate_hz: float) -> FloatArray:
+    """Return a channel with its steps removed and samples around them missing."""
     out = y.copy()
-    out[step.at :] -= step.by
     gap = max(round(GAP_S * sample_rate_hz), 3)
-    out[max(step.at - gap, 0) : step.at + gap] = np.nan
+    for step in steps:
+        out[step.at :] -= step.by
+    for step in steps:
+        out[max(step.at - gap, 0) : step.at + gap] = np.nan
     return out
 
 
@@ -90,13 +111,14 @@ def zeros_in_line(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     data, findings, at = record.data, [], []
     rows = [i for i, c in enumerate(record.channels) if c.quantity in ("acceleration", "velocity")]
     for i in rows:
-        step = zero_step(record.data[i])
-        if step is not None:
+        steps = zero_steps(record.data[i])
+        if steps:
             data = record.data.copy() if data is record.data else data
-            data[i] = without_step(record.data[i], step, record.sample_rate_hz)
+            data[i] = without_steps(record.data[i], steps, record.sample_rate_hz)
+            at.append(steps[0].at / record.sample_rate_hz)
+        for step in steps:
             params = {"size": step.over_rms, "time_s": step.at / record.sample_rate_hz}
             findings.append(Finding("zero_steps", record.channels[i].name, params))
-            at.append(params["time_s"])
     if len(at) > 0.5 * len(rows):
         findings.insert(0, Finding("zero_steps_together", params={"time_s": float(np.median(at))}))
     return replace(record, data=data) if findings else record, tuple(findings)

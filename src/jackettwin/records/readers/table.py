@@ -12,9 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.arrays import FloatArray
+from jackettwin.constants import HOUR_S
 from jackettwin.errors import InputError, did_you_mean, require
 from jackettwin.quantities import guess_quantity, names_other
-from jackettwin.records.clocks import between_ticks, regularise
+from jackettwin.records.clocks import between_ticks, regularise, without_hours
 from jackettwin.records.readers.channel_names import Reading, read_name, read_names, told
 from jackettwin.records.readers.channels import (
     DescribedChannel,
@@ -51,6 +52,7 @@ TIME_NAMES = (
 UNSTATED_RATES_HZ = (0.1, 2e4)
 """Sample rates of records of vibrations whose time column has no unit; others are not in seconds."""
 COARSE = "many samples share a time stamp, alike for all stamps: taken as evenly spread, at"
+PUT_ON = "taken for summer time or another zone, with no sample missing; if the logger paused, cut it there"
 _SECONDS_IN = {
     "ns": 1e-9, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ms": 1e-3, "s": 1.0, "sec": 1.0, "seconds": 1.0,
     "min": 60.0, "h": 3600.0, "d": 86400.0, "day": 86400.0, "days": 86400.0, "tage": 86400.0,
@@ -296,6 +298,10 @@ def to_record(
         )
     start_utc, times_s, unzoned = _start(table, said, defaults)
     if times_s is not None:
+        times_s, put_on = without_hours(times_s)
+        if put_on is not None:
+            jump = f"the clock is put on by {put_on[1] / HOUR_S:g} h after {put_on[0]:.4g} s: {PUT_ON}"
+            metadata["remarks"] = [*metadata.get("remarks", ()), jump]
         spread = between_ticks(times_s)
         data, clock = regularise(times_s if spread is None else spread, data, sample_rate_hz=stated)
         if stated is None and not table.times_unit_said:
