@@ -247,3 +247,25 @@ def test_a_large_change_of_noisy_records_is_no_sensor_and_a_small_one_is() -> No
 
     assert first(-0.03, quiet) == first(-0.03, loud) == "softer"
     assert first(-0.0003, loud) == "sensor: more scatter"
+
+
+def test_a_size_is_as_uncertain_as_the_scale_of_its_effect() -> None:
+    """Where draws differ by a factor s alone and a change δ is known, θ is δ/(J s): as wide in ln as s.
+
+    Draws of which one moves another quantity are no scale, and widen nothing.
+    """
+    ln_s = 0.5 * np.array([-1.5, -0.7, -0.2, 0.2, 0.7, 1.5])
+    J, precise = np.array([1.0, 0.5, 2.0]), np.diag([1e8, 1e8, 1e8])
+    sizes, weights = sizes_about(0.1, 1.2, larger=True)
+    scaled = Cause("soil", np.exp(ln_s)[:, None] * J, sizes, weights, misfit=1e-3)
+    delta = 0.1 * J
+    _, mid, (low, high) = _judge([(0.0, changed(precise, precise @ delta))], scaled, KINDS)
+    assert mid == pytest.approx(0.1, rel=0.05)
+    wide = 1.645 * np.std(ln_s, ddof=1)
+    # of 99 factors one is at 4.5, the next at 5.6 %: within 0.05 standard deviations, and steps of the sizes
+    assert np.log(high / mid) == pytest.approx(wide, rel=0.05)
+    assert np.log(mid / low) == pytest.approx(wide, rel=0.05)
+    shaped = J + np.array([[0.0, 0.0, x] for x in (-1.0, 0.0, 1.0)])
+    other = Cause("mass", shaped, sizes, weights, misfit=1e-3)
+    _, mid, (low, high) = _judge([(0.0, changed(precise, precise @ delta))], other, KINDS)
+    assert np.log(high / low) < 0.1

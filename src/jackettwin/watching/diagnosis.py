@@ -16,7 +16,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtrc
+from scipy.special import chdtrc, ndtri
 
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import QUANTILES
@@ -41,6 +41,10 @@ TAIL = {1.0: 0.68, 3.0: 0.22, 9.0: 0.1}
 """Errors of a model's directions, as multiples of the usual error, and their probabilities. Of some five
 hundred directions compared, 68 % were within the usual error and 90 % within three times it
 (docs/verification/directions.md)."""
+_SCALED, _SHAPED, _LEAST_SCALE, _FACTORS = 0.05, 0.25, 0.05, 99
+"""Spread of ln of the scale of a cause's effect from which its size is as uncertain, largest share of the
+draws' variance that is of their shape, smallest scale over the mean that has a logarithm, and number of
+equally likely factors."""
 _LOUDER_TOO, _NO_SIGN = 0.05, -3.0
 """Probability that the scatter of a changed structure's records increases too, and ln of the evidence for it
 below which this is not considered."""
@@ -221,6 +225,13 @@ def _judge(
     if cause.louder.size:
         change = states[0][1]
         return _noisy(change, cause, _begins(change)), np.nan, (np.nan, np.nan)
+    by_size = _by_size(states, cause, kinds)
+    low, mid, high = _size_quantiles(states, cause, kinds, by_size)
+    return float(np.logaddexp.reduce(by_size)), mid, (low, high)
+
+
+def _by_size(states: Sequence[tuple[float, Change]], cause: Cause, kinds: Sequence[str]) -> FloatArray:
+    """Return ln of the evidence of each size with its prior, (n_sizes,)."""
     by_state = []
     for weight, change in states:
         by_miss = [
@@ -229,14 +240,47 @@ def _judge(
         ]
         logs = np.logaddexp.reduce(by_miss, axis=0) + _begins(change)[:, None]
         by_state.append(weight + np.logaddexp.reduce(logs, axis=0) + cause.log_size_weights)
-    by_size = np.logaddexp.reduce(by_state, axis=0)
-    total = float(np.logaddexp.reduce(by_size))
-    order = np.argsort(cause.sizes)
-    share = np.cumsum(np.exp(by_size[order] - total))
-    low, mid, high = (
-        cause.sizes[order][np.searchsorted(share, p).clip(0, share.size - 1)] for p in QUANTILES
+    return np.asarray(np.logaddexp.reduce(by_state, axis=0))
+
+
+def _size_quantiles(
+    states: Sequence[tuple[float, Change]], cause: Cause, kinds: Sequence[str], by_size: FloatArray
+) -> tuple[float, float, float]:
+    r"""Return the quantiles of the size.
+
+    Feet of uncertain stiffness scale the effect of a softer ground by a factor that no change of modes tells
+    from the size. With s of a draw its scale, :math:`J_d^T A J / J^T A J`, lognormal, a = sθ is what the
+    change tells, by directions J_d/s, and θ is a/s. Normal directions alone leave no room for a stiff ground,
+    whose loss by half moves modes as little as a fifth of the likely one.
+    """
+    sizes, logs = cause.sizes, by_size
+    scaled = _scaled(max(states, key=lambda state: state[0])[1], cause)
+    if scaled is not None:
+        spread, draws = scaled
+        factors = np.exp(spread * ndtri((np.arange(_FACTORS) + 0.5) / _FACTORS))
+        sizes = (cause.sizes[:, None] / factors).ravel()
+        logs = np.repeat(_by_size(states, replace(cause, draws=draws), kinds), _FACTORS)
+        logs[np.abs(sizes) > np.abs(cause.sizes).max()] = -np.inf
+    weights = np.exp(logs - logs.max())
+    order = np.argsort(sizes)
+    share = np.cumsum(weights[order]) / weights.sum()
+    low, mid, high = (sizes[order][np.searchsorted(share, p).clip(0, share.size - 1)] for p in QUANTILES)
+    return float(low), float(mid), float(high)
+
+
+def _scaled(change: Change, cause: Cause) -> tuple[float, FloatArray] | None:
+    """Return the spread of ln of the scale of a cause's draws and these without it, if it is most of them."""
+    mean, info = cause.draws.mean(axis=0), change.info[_best(change)]
+    scale = cause.draws @ info @ mean / max(float(mean @ info @ mean), 1e-300)
+    if len(scale) < 2 or scale.min() < _LEAST_SCALE:
+        return None
+    logs = np.log(scale)
+    draws = cause.draws * (np.exp(logs.mean()) / scale)[:, None]
+    left, all_ = (
+        float(np.einsum("di,ij,dj->", x, info, x)) for x in (draws - draws.mean(axis=0), cause.draws - mean)
     )
-    return total, float(mid), (float(low), float(high))
+    spread = float(logs.std(ddof=1))
+    return (spread, draws) if spread > _SCALED and left < _SHAPED * all_ else None
 
 
 def _begins(change: Change) -> FloatArray:
