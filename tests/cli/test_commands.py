@@ -166,6 +166,9 @@ def test_an_identification_loads_what_it_uses(tmp_path: Path) -> None:
 def test_an_unknown_command_is_bad_input() -> None:
     done = CliRunner().invoke(main, ["mods"])
     assert done.exit_code == 2 and "No such command" in done.stderr
+    for words in (["--nonsense", "--json"], ["--json", "--nonsense", "run"], ["mods", "--json"]):
+        done = CliRunner().invoke(main, words)
+        assert done.exit_code == 2 and "No such" in json.loads(done.stdout)["error"]["message"]
 
 
 def test_the_readme_lists_every_command_and_no_other() -> None:
