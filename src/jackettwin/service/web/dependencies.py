@@ -18,6 +18,7 @@ from sqlalchemy import Connection
 from jackettwin.errors import InputError
 from jackettwin.service.answer_cache import Answer, content_tag, has_tag
 from jackettwin.service.context import Service
+from jackettwin.service.web import names
 from jackettwin.service.web.auth import Who
 from jackettwin.service.web.problems import ApiError, laid_out_soon
 from jackettwin.store import assets, journal, reading, records, writing
@@ -58,9 +59,9 @@ CONNECTED, WAITING = at_most(12), at_most(16)
 
 Parts = Annotated[Service, Depends(get_service)]
 Asker = Annotated[Who, Depends(asker)]
-AssetName = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$", examples=["demo"])]
+AssetName = Annotated[str, Path(pattern=names.ASSET, examples=["demo"])]
 AnyVersion = Annotated[int | None, Query(ge=1, le=1_000_000, description="Default: the adopted one.")]
-RecordId = Annotated[str, Path(pattern=r"^[0-9a-f]{8,64}$", examples=["0123456789abcdef01234567"])]
+RecordId = Annotated[str, Path(pattern=names.RECORD, examples=["0123456789abcdef01234567"])]
 
 
 def read(service: Parts, _: Annotated[None, CONNECTED]) -> Iterator[Connection]:

@@ -14,6 +14,7 @@ from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from jackettwin.errors import InputError
+from jackettwin.service.web.names import ALLOWED
 from jackettwin.service.workers.failures import DISK_FULL, NoWorker, problem_of
 
 MEDIA_TYPE = "application/problem+json"
@@ -162,13 +163,19 @@ def _invalid_request(error: RequestValidationError) -> Response:
     first = error.errors()[0]
     place = ".".join(str(part) for part in first["loc"] if part not in ("body", "query", "path", "header"))
     value = first.get("input")
+    allowed = ALLOWED.get(first.get("ctx", {}).get("pattern", ""))
     return _answer(
         ProblemDocument(
             title=TITLES[422],
             status=422,
-            detail=first["msg"],
+            detail=first["msg"]
+            if allowed is None
+            else f"{str(value)[:80]!r} is not a name that is possible here",
+            allowed=allowed,
             field=place or None,
             value=None if value is None else str(value)[:200],
-            remedy="see /api/v1/openapi.json for what is allowed",
+            remedy="see /api/v1/openapi.json for what is allowed"
+            if allowed is None
+            else "write it with these characters only, for instance wtg_01",
         )
     )

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import AwareDatetime, BaseModel, Field, FiniteFloat
 
+from jackettwin.service.web import names
 from jackettwin.service.web.schemas.common import FIRST, LAST
 from jackettwin.service.web.schemas.drawings import StructureOut
 from jackettwin.service.web.schemas.modes import TwinOut
@@ -57,7 +58,7 @@ class NewVersion(BaseModel):
 class NewAsset(NewVersion):
     """An asset with the first version of its twin."""
 
-    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")
+    name: str = Field(pattern=names.ASSET)
 
 
 class GuessOut(BaseModel):

@@ -10,6 +10,7 @@ from jackettwin.service.alerts.broker import Topic
 from jackettwin.service.alerts.mail import MailServer
 from jackettwin.service.alerts.rules import ChannelRule
 from jackettwin.service.alerts.webhook import Hook
+from jackettwin.service.web import names
 
 Secret = Annotated[str, Field(min_length=1, max_length=1024, pattern=r"^[^\x00-\x1f\x7f]*$")]
 """A secret in one line."""
@@ -46,7 +47,7 @@ class MqttIn(Topic):
 class NewChannel(BaseModel):
     """A channel to add, and its rules; by default for every alarm."""
 
-    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")
+    name: str = Field(pattern=names.ASSET)
     channel: Annotated[MailIn | WebhookIn | MqttIn, Field(discriminator="kind")]
     rules: list[ChannelRule] = Field(default=[ChannelRule()], min_length=1, max_length=100)
 

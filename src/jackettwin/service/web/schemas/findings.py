@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AwareDatetime, BaseModel, Field
 
+from jackettwin.service.web import names
 from jackettwin.service.web.schemas.common import FIRST, LAST
 
 
@@ -69,7 +70,7 @@ class Acknowledgement(BaseModel):
 class AssignIn(BaseModel):
     """Whose a finding is to look after; null for nobody's."""
 
-    to: str | None = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._@-]{0,63}$")
+    to: str | None = Field(pattern=names.USER)
     comment: Comment = ""
 
 

@@ -7,6 +7,7 @@ from typing import Literal
 
 from pydantic import AwareDatetime, BaseModel, Field
 
+from jackettwin.service.web import names
 from jackettwin.service.web.schemas.common import FIRST, LAST
 
 
@@ -34,7 +35,7 @@ class Me(BaseModel):
 class NewUser(BaseModel):
     """A user to add."""
 
-    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._@-]{0,63}$")
+    name: str = Field(pattern=names.USER)
     role: Literal["viewer", "engineer", "admin"]
     password: str | None = Field(
         default=None,
