@@ -179,13 +179,21 @@ def test_modes_are_asked_for_by_state_of_operation(client: TestClient, service: 
 
 
 def test_members_are_coloured_by_the_worst_weld_of_their_side() -> None:
-    """Of two welds on a leg the faster counts; a member without welds has no colour."""
+    """Of two welds on a leg the faster counts; doubtful ones do not; without any there is no colour."""
     drawn = StructureOut(text=["leg (jacket)<br>D 1 m", "brace (jacket)<br>D 1 m", "tower<br>D 6 m"])
-    left = {"remaining_years": {"p50": 40.0}}
+    left = {"remaining_years": {"p50": 40.0}, "beyond_validity": []}
     welds = [
         {"chord": "leg", "brace": "brace", "side": "chord", "rate_per_year": 0.01, **left},
         {"chord": "leg", "brace": "other", "side": "chord", "rate_per_year": 0.02, **left},
         {"chord": "tower", "brace": "tower", "side": "tube", "rate_per_year": 0.03, **left},
+        {
+            "chord": "leg",
+            "brace": "brace",
+            "side": "brace",
+            "rate_per_year": 9.0,
+            **left,
+            "beyond_validity": ["τ"],
+        },
     ]
     life, damage = coloured_by_life(drawn, welds).quantities
     assert life.values == [40.0, None, 40.0] and damage.values == [0.02, None, 0.03]

@@ -85,9 +85,10 @@ def coloured_by_life(drawn: StructureOut, welds: Sequence[Mapping[str, Any]]) ->
     """Return a structure with the life and the damage of each member's worst weld; as it is without any.
 
     A weld belongs to the member on whose side it is: the chord's or the brace's; around a tube both are it.
+    Of welds beyond the ranges of their factors nothing is certain: they colour nothing.
     """
     worst: dict[str, Mapping[str, Any]] = {}
-    for weld in welds:
+    for weld in (one for one in welds if not one["beyond_validity"]):
         name = weld["brace" if weld["side"] == "brace" else "chord"]
         if name not in worst or weld["rate_per_year"] > worst[name]["rate_per_year"]:
             worst[name] = weld
