@@ -970,7 +970,10 @@ def test_a_report_is_framed_once_there_is_one(opened: Open, monkeypatch: pytest.
 def test_what_there_is_not_says_so(opened: Open) -> None:
     opened.said.clear()
     page = opened.page("/")
-    no_text = (("/assets/%E0%A4", "should match pattern"), ("/assets/wtg/nothing%FF", "no such page"))
+    no_text = (
+        ("/assets/%E0%A4", "letters a to z or A to Z, digits, _ and -"),
+        ("/assets/wtg/nothing%FF", "no such page"),
+    )
     for path, words in (("/assets/none", "no such asset"), ("/assets/wtg/nothing", "no such page"), *no_text):
         page.goto(path)
         expect(page.get_by_text(words).first).to_be_visible()  # each part of the page says so
@@ -985,6 +988,7 @@ def test_a_stranger_logs_in_and_comes_back_to_where_he_was(
             alarm(service, url, "The structure changed.")
             with writing(service.database) as connection:
                 people.add_user(connection, people.User("eva", "viewer", password_hash, NOON))
+                people.add_user(connection, people.User("ines", "engineer", password_hash, NOON))
             context = browser.new_context(base_url=url)
             page = context.new_page()
             page.goto("/assets/wtg")
@@ -1012,7 +1016,27 @@ def test_a_stranger_logs_in_and_comes_back_to_where_he_was(
             page.get_by_label("Password").fill(PASSWORD)
             page.get_by_label("Password").press("Enter")
             page.wait_for_url(f"{url}/")
+            context.clear_cookies()
+            page.goto("/login?next=/assets/wtg/alarms")
+            log_in(page, "ines")
+            page.get_by_role("button", name="Comment").click()
+            said = page.locator("textarea")
+            said.fill("The divers come on Monday.")
+            for who, kept in (("ines", True), ("eva", False)):
+                context.clear_cookies()  # the session ends under the open page
+                page.get_by_role("button", name="Comment").click()
+                expect(page.get_by_label("Password")).to_be_visible()
+                expect(said).to_be_hidden()
+                log_in(page, who)
+                expect(page.get_by_label("Password")).to_have_count(0)
+                assert (said.count() and said.input_value()) == (kept and "The divers come on Monday.")
             context.close()
+
+
+def log_in(page: Page, name: str) -> None:
+    page.get_by_label("Name").fill(name)
+    page.get_by_label("Password").fill(PASSWORD)
+    page.get_by_label("Password").press("Enter")
 
 
 def test_first_load_is_small(opened: Open) -> None:

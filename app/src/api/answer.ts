@@ -1,7 +1,7 @@
 // A question that a page asks, and asks again when something happened.
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Readable } from "openapi-typescript-helpers";
-import { api, Problem, told } from "./client";
+import { api, ended, me, Problem, told } from "./client";
 import { connection, happened } from "./events";
 import type { paths } from "./schema";
 
@@ -31,7 +31,7 @@ export function useAnswer<T>(
   const [tries, setTries] = useState(0);
   const newest = useRef(0);
   const events = asset === null ? 0 : (happened.value[asset] ?? 0);
-  const lost = connection.value === "lost";
+  const [lost, closed] = [connection.value === "lost", ended.value];
   const again = (): void => setTries((n) => n + 1);
   useEffect(() => {
     if (!state.problem?.after) return;
@@ -41,14 +41,14 @@ export function useAnswer<T>(
   useEffect(() => {
     const number = ++newest.current;
     const keep = (data: T | undefined, problem: Problem | undefined): void => {
-      if (number !== newest.current) return;
+      if (number !== newest.current || (problem?.kind === "login" && me.value)) return; // the frame asks who it is
       setState((old) => ({ key, data: data ?? (old.key === key ? old.data : undefined), problem }));
     };
     ask().then(
       (data) => keep(data, undefined),
       (error: unknown) => keep(undefined, error instanceof Problem ? error : new Problem("server", String(error))),
     );
-  }, [key, about, events, tries, lost]);
+  }, [key, about, events, tries, lost, closed]);
   const { data, problem }: State<T> = state.key === key ? state : { key };
   return { data, problem, again };
 }

@@ -15,6 +15,8 @@ export type RecordOut = Schemas["RecordOut"];
 
 /** Who is logged in: undefined while nobody has asked, null if the server knows nobody. */
 export const me = signal<Schemas["Me"] | null | undefined>(undefined);
+/** Whether the session of who was logged in has ended: the page stays, with what is written there, behind a login. */
+export const ended = signal(false);
 
 export const api = createClient<paths>({ baseUrl: location.origin });
 api.use({
@@ -41,16 +43,14 @@ export class Problem extends Error {
 
 const KINDS: Record<number, Problem["kind"]> = { 401: "login", 403: "role", 404: "missing" };
 
-type Said = { detail?: unknown; remedy?: unknown; field?: unknown; allowed?: unknown };
-
 /** Make a problem of an answer that is none. */
 export function problemOf(status: number, said: unknown, after = 0): Problem {
-  const told = (typeof said === "object" && said !== null ? said : {}) as Said;
+  const told = (typeof said === "object" && said !== null ? said : {}) as Record<string, unknown>;
   const text = (value: unknown): string => (typeof value === "string" ? value : "");
   const kind = KINDS[status] ?? (after ? "soon" : status >= 500 ? "server" : "refused");
-  const allowed = text(told.allowed) && `; allowed: ${text(told.allowed)}`;
-  const detail = text(told.detail) || `the server answered ${status}`;
-  return new Problem(kind, detail + allowed, text(told.remedy), text(told.field), after);
+  const allowed = text(told["allowed"]) && `; allowed: ${text(told["allowed"])}`;
+  const detail = text(told["detail"]) || `the server answered ${status}`;
+  return new Problem(kind, detail + allowed, text(told["remedy"]), text(told["field"]), after);
 }
 
 type Fetched<T> = { data?: T; error?: unknown; response: Response };
@@ -64,7 +64,7 @@ export async function told<T>(answer: Promise<Fetched<T>>): Promise<T> {
     throw new Problem("offline", "The server does not answer.", "It is asked again by itself.");
   }
   if (fetched.response.ok) return fetched.data as T;
-  if (fetched.response.status === 401) me.value = null;
+  if (fetched.response.status === 401) [ended.value, me.value] = [!!me.value, me.value || null];
   throw problemOf(fetched.response.status, fetched.error, Number(fetched.response.headers.get("Retry-After")));
 }
 

@@ -1,14 +1,8 @@
 // Something that a reader does: it is under way, or it failed and the server said why.
 import { useState } from "preact/hooks";
-import { me, Problem } from "./client";
+import { api, ended, me, Problem, told, type Schemas } from "./client";
 
-export interface Deed {
-  busy: boolean;
-  problem: Problem | null;
-  run: (deed: () => Promise<unknown>) => Promise<boolean>;
-}
-
-export function useDeed(): Deed {
+export function useDeed() {
   const [busy, setBusy] = useState(false);
   const [problem, setProblem] = useState<Problem | null>(null);
   const run = async (deed: () => Promise<unknown>): Promise<boolean> => {
@@ -24,7 +18,21 @@ export function useDeed(): Deed {
       setBusy(false);
     }
   };
-  return { busy, problem, run };
+  return { busy, problem: problem?.kind === "login" && me.value && !ended.value ? null : problem, run };
+}
+
+/** Somebody is logged in. What another one has left open is not theirs to read. */
+export function enter(user: Schemas["Me"]): void {
+  if (ended.value && me.value?.name !== user.name) location.reload();
+  else [me.value, ended.value] = [user, false];
+}
+
+export async function askWho(): Promise<void> {
+  try {
+    enter(await told(api.GET("/api/v1/me")));
+  } catch (error) {
+    if (error instanceof Problem && error.kind !== "login") setTimeout(() => void askWho(), 3000);
+  }
 }
 
 const ROLES = ["viewer", "engineer", "admin"];

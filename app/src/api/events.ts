@@ -6,15 +6,12 @@ const REST_MS = 800;
 /** A farm tells something every moment; a list of all turbines is asked for again after this time. */
 const REST_ALL_MS = 3000;
 
-export type Connection = "connecting" | "live" | "lost";
-export const connection = signal<Connection>("connecting");
+export const connection = signal<"connecting" | "live" | "lost">("connecting");
 /** Counts what happened, by asset; "" counts everything. */
 export const happened = signal<Record<string, number>>({ "": 0 });
 
-let pending = new Set<string>();
+let [pending, told] = [new Set<string>(), 0];
 let timer: ReturnType<typeof setTimeout> | undefined;
-
-let told = 0;
 
 function note(assets: Iterable<string>): void {
   for (const asset of [...assets, ""]) pending.add(asset);

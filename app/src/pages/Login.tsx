@@ -1,6 +1,7 @@
 // Who are you?
 import { useAnswer } from "../api/answer";
-import { api, me, told } from "../api/client";
+import { api, ended, told } from "../api/client";
+import { enter } from "../api/do";
 import { Field, Form } from "../parts/Bits";
 import { asked, go } from "../shell/place";
 
@@ -13,14 +14,19 @@ export function Login() {
   const health = useAnswer(null, "health", () => told(api.GET("/api/v1/health")));
   const send = async (text: (name: string) => string): Promise<void> => {
     const body = { name: text("name"), password: text("password"), new: text("new") || null };
-    me.value = await told(api.POST("/api/v1/login", { body }));
-    go(safePlace(asked("next")));
+    const inside = !ended.value;
+    enter(await told(api.POST("/api/v1/login", { body })));
+    if (inside) go(safePlace(asked("next")));
   };
   return (
-    <main class="narrow" id="main">
+    <main class="narrow">
       <section class="card" aria-label="Log in">
         <h1>Log in to jackettwin</h1>
-        {asked("next") && <p class="quiet">Nobody is logged in, or no longer: then you are back where you were.</p>}
+        {(ended.value || asked("next")) && (
+          <p class="quiet">
+            Nobody is logged in, or no longer: then you are back where you were, with what you wrote.
+          </p>
+        )}
         <Form words="Log in" busy="Asking" onSend={send}>
           {(problem) => (
             <>
@@ -41,7 +47,7 @@ export function Login() {
         </Form>
         {health.data?.openid && (
           <p class="other-way">
-            <a class="button" href="/api/v1/oidc/login" data-leave>
+            <a class="button" href="/api/v1/oidc/login" data-leave {...(ended.value ? { target: "_blank" } : {})}>
               Log in with your organisation's account
             </a>
           </p>

@@ -27,7 +27,7 @@ const NameField = () => (
     required
     pattern="[A-Za-z0-9][A-Za-z0-9_\-]*"
     maxLength={64}
-    title="letters, digits, _ and -"
+    title="letters a to z, digits, _ and -, a letter or digit first"
   />
 );
 
@@ -111,9 +111,7 @@ function Drafting({ files }: { files: readonly File[] }) {
   );
 }
 
-type ConfirmingProps = { draft: Draft; structure: File; records: File[] };
-
-function Confirming({ draft, structure, records }: ConfirmingProps) {
+function Confirming({ draft, structure, records }: { draft: Draft; structure: File; records: File[] }) {
   const add = async (text: (name: string) => string): Promise<void> =>
     begin(text("name"), { twin: text("twin"), files: { [draft.structure]: await structure.text() } }, records);
   return (

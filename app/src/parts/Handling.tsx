@@ -47,10 +47,8 @@ async function sent(f: Finding, act: Act, text: (name: string) => string): Promi
   return told(api.POST(`/api/v1/findings/{finding_id}/${act}`, { params, body } as never));
 }
 
-type HandlingProps = { finding: Finding; again: () => void };
-
 /** Buttons, one of which opens a form. */
-export function Handling({ finding, again }: HandlingProps) {
+export function Handling({ finding, again }: { finding: Finding; again: () => void }) {
   const [act, setAct] = useState<Act | null>(null);
   if (!may("engineer"))
     return finding.severity === "alarm" && !finding.acknowledged_by ? (

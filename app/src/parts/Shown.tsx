@@ -15,9 +15,7 @@ const HEADINGS: Record<Problem["kind"], string> = {
   server: "The server failed",
 };
 
-type TroubleProps = { problem: Problem; again?: () => void; title?: string };
-
-export function Trouble({ problem, again, title }: TroubleProps) {
+export function Trouble({ problem, again, title }: { problem: Problem; again?: () => void; title?: string }) {
   return (
     <div class={`state ${problem.kind}`} role="alert">
       {title && <h1>{title}</h1>}

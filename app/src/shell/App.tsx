@@ -2,9 +2,9 @@
 import { Suspense } from "preact/compat";
 import type { ComponentType } from "preact";
 import { useEffect } from "preact/hooks";
-import { api, me, Problem, told } from "../api/client";
+import { api, ended, me } from "../api/client";
 import { connection, listen, stopListening } from "../api/events";
-import { may } from "../api/do";
+import { askWho, may } from "../api/do";
 import { Fleet } from "../pages/Fleet";
 import { Login } from "../pages/Login";
 import { Turbine } from "../pages/Turbine";
@@ -31,15 +31,8 @@ const OWN_TABS: readonly (readonly [string, string, string])[] = [
   ["/docs", "API", "viewer"],
 ];
 
-async function ask(): Promise<void> {
-  try {
-    me.value = await told(api.GET("/api/v1/me"));
-  } catch (error) {
-    if (error instanceof Problem && error.kind !== "login") setTimeout(() => void ask(), 3000);
-  }
-}
-
-void ask(); // beside the first answers of the page, not before them
+addEventListener("focus", () => ended.value && void askWho()); // somebody may have logged in beside it
+void askWho(); // beside the first answers of the page, not before them
 
 async function logOut(): Promise<void> {
   await api.POST("/api/v1/logout").catch(() => undefined);
@@ -113,9 +106,9 @@ export function App() {
   useEffect(() => {
     if (user === null && page !== "login")
       go(`/login?next=${encodeURIComponent(place.value.path + location.search)}`, true);
-    if (user) listen();
+    if (user && !ended.value) listen();
     else stopListening();
-  }, [user, page]);
+  }, [user, page, ended.value]);
   useEffect(() => {
     const here = document.querySelector(".tabs [aria-current]"); // on a phone the row is longer than the screen
     here?.scrollIntoView({ inline: "center", block: "nearest" });
@@ -126,29 +119,32 @@ export function App() {
   const Page = PAGES[page];
   return (
     <>
-      <a class="skip" href="#main">
-        To the page
-      </a>
-      <Top />
-      {connection.value === "lost" && (
-        <p class="offline" role="alert">
-          The server does not answer. What is shown is as it was; it is asked again by itself.
-        </p>
-      )}
-      <main id="main" tabIndex={-1}>
-        <Strange />
-        {user !== null && (
-          <Suspense fallback={<div class="bones" role="status" aria-label="Loading" />}>
-            {Page ? (
-              <Page key={`${page} ${asset} ${id}`} asset={asset} id={id} />
-            ) : (
-              <Empty title="There is no such page">
-                Go to <a href="/">all turbines</a>.
-              </Empty>
-            )}
-          </Suspense>
+      {ended.value && <Login />}
+      <div hidden={ended.value}>
+        <a class="skip" href="#main">
+          To the page
+        </a>
+        <Top />
+        {connection.value === "lost" && (
+          <p class="offline" role="alert">
+            The server does not answer. What is shown is as it was; it is asked again by itself.
+          </p>
         )}
-      </main>
+        <main id="main" tabIndex={-1}>
+          <Strange />
+          {user !== null && (
+            <Suspense fallback={<div class="bones" role="status" aria-label="Loading" />}>
+              {Page ? (
+                <Page key={`${page} ${asset} ${id}`} asset={asset} id={id} />
+              ) : (
+                <Empty title="There is no such page">
+                  Go to <a href="/">all turbines</a>.
+                </Empty>
+              )}
+            </Suspense>
+          )}
+        </main>
+      </div>
     </>
   );
 }

@@ -119,10 +119,8 @@ document.addEventListener("click", (event) => {
 const decoded = (part: string): string =>
   new URLSearchParams(`_=${part.replaceAll("+", "%2B").replaceAll("&", "%26")}`).get("_") ?? "";
 
-export type Route = { page: string; asset: string; id: string };
-
 /** /assets/wtg/records/1a2b is the page "record" of "wtg"; pages of no turbine have no asset. */
-export function routeOf(path: string): Route {
+export function routeOf(path: string) {
   const [first = "", asset = "", page = "", id = ""] = path.split("/").slice(1).map(decoded);
   if (first !== "assets" || !asset) return { page: first || "fleet", asset: "", id: "" };
   return { page: id ? "record" : page || "turbine", asset, id };
