@@ -66,7 +66,7 @@ WINDOW = (
         "/assets/demo/timeline?mode=fore_aft_2&from=2023-12-05&to=2025-11-30",
         None,
         1280,
-        800,
+        860,
     ),
     Shot(
         "window_structure",
@@ -146,6 +146,7 @@ def _take(page: Page, url: str, shot: Shot, out: Path) -> None:
     if shot.figure is None:
         page.screenshot(path=out)
         return
+    page.evaluate("document.querySelectorAll('details.part').forEach(part => { part.open = true })")
     figure = page.locator("figure", has_text=shot.figure).first
     figure.scroll_into_view_if_needed()
     page.wait_for_timeout(500)

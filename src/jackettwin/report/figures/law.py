@@ -43,7 +43,9 @@ def moduli(laws: Mapping[str, LawCurves]) -> go.Figure:
             # a spring has no loss, which a logarithmic axis cannot show
             shown = np.where(np.isfinite(y) & (y > 0.0), y, np.nan)
             figure.add_trace(_line(i, law.frequency_hz, shown, name, first=col == 1), row=1, col=col)
-    figure.update_xaxes(type="log", exponentformat="power", title_text=style.title("frequency", "Hz"))
+    figure.update_xaxes(
+        type="log", dtick=1, exponentformat="power", title_text=style.title("frequency", "Hz")
+    )
     figure.update_yaxes(type="log", exponentformat="power")
     for col, unit in enumerate(("N/m", "N/m", "-"), start=1):
         figure.update_yaxes(

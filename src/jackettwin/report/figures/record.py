@@ -130,7 +130,7 @@ def spectra(
     if fit is not None:
         _fit(figure, fit)
     _mark(figure, modes, limits)
-    figure.update_yaxes(type="log", exponentformat="power", dtick=1)
+    figure.update_yaxes(type="log", exponentformat="power", dtick=2)
     figure.update_yaxes(title_text=style.title("PSD", unit), row=1, col=1)
     figure.update_yaxes(title_text=style.title("singular values", "1/Hz"), row=2, col=1)
     figure.update_xaxes(range=limits)
