@@ -47,3 +47,6 @@ def test_sound_channels_drifts_and_swings_have_none(tower: SimpleNamespace) -> N
         for row in tower.record(seed).data:
             for slow in (0.0, 5.0 * t, 3.0 * np.sin(2.0 * np.pi * 1.5 * t), 3.0 * t**2):
                 assert not zero_steps(row + slow * row.std())
+            gap = row.copy()
+            gap[5_000:7_500] = np.nan  # a line across it would have the level of its ends
+            assert not zero_steps(gap)

@@ -22,6 +22,7 @@ from jackettwin.identification.maximum_likelihood.line_likelihood import (
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.maximum_likelihood.periodogram import MIN_CYCLES
 from jackettwin.identification.preparation.gaps import stretches
+from jackettwin.identification.selection.gusts import less_information, widened
 from jackettwin.identification.selection.neighbours import apart
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.sinusoid import transform
@@ -77,7 +78,8 @@ def with_damping_likelihoods(
         return tuple(modes)
     duration_s = sum(part.stop - part.start for part in parts) / sample_rate_hz
     order = np.asarray(derivatives)[:, None]
-    out = list(modes)
+    less = less_information(modes, y, sample_rate_hz, scale)
+    out = [widened(mode, times) for mode, times in zip(modes, less, strict=True)]
     looks: list[tuple[float, ComplexArray]] = []
     for i, mode in enumerate(modes):
         lines_wide = mode.damping_ratio * mode.frequency_hz * duration_s
@@ -98,7 +100,7 @@ def with_damping_likelihoods(
             x = own @ (density * (2j * np.pi * f) ** order)
             of_parts.append(damping_log_likelihood(x, mode.frequency_hz, f, length_s))
         if len(of_parts) == len(looks):
-            out[i] = _with(mode, np.sum(of_parts, axis=0), duration_s)
+            out[i] = _with(out[i], np.sum(of_parts, axis=0) / less[i], duration_s)
     return tuple(out)
 
 

@@ -15,7 +15,6 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.findings import Finding
-from jackettwin.records.processing.filters import bridge
 from jackettwin.records.record import Record
 from jackettwin.signals import of_fast_length
 
@@ -58,11 +57,12 @@ def zero_steps(y: FloatArray) -> tuple[ZeroStep, ...]:
     >>> abs(first.at - 1000) < 10, round(first.by, 1), abs(second.at - 2000) < 10, round(second.by, 1)
     (True, 2.0, True, -3.0)
     """
-    n, there = len(y), np.isfinite(y)
-    if n < 10 * SLOW or there.mean() < 0.5:
+    there = np.flatnonzero(np.isfinite(y))
+    if len(y) < 10 * SLOW or len(there) < 0.5 * len(y):
         return ()
-    x = bridge(y)
-    x = x - x.mean()
+    # without the gaps: a line across one has the level of its two ends
+    x = y[there] - y[there].mean()
+    n = len(x)
     slow = _slow_power(x)
     ends = [0, n]
     for number in range(1, MOST_STEPS + 1):
@@ -75,7 +75,7 @@ def zero_steps(y: FloatArray) -> tuple[ZeroStep, ...]:
             return ()
         if _slow_power(rest) <= UNEXPLAINED / (number + 1) ** 2 * slow:
             return tuple(
-                ZeroStep(at, float(one), abs(float(one)) / rms)
+                ZeroStep(int(there[at]), float(one), abs(float(one)) / rms)
                 for at, one in zip(ends[1:-1], by, strict=True)
             )
     return ()
