@@ -83,6 +83,16 @@ def test_mass_at_the_top_does_what_rayleighs_quotient_says(model: ModelCauses) -
     np.testing.assert_allclose(three[:2], 3.0 * one_percent[:2], rtol=0.05)  # ½ Δm: bent by ¾ Δm² alone
 
 
+def test_friction_adds_to_damping_and_not_to_its_logarithm(model: ModelCauses) -> None:
+    """Half of what ln f loses is added to ζ = 1 %: ln ζ grows by the logarithm of one and its share of ζ."""
+    (cause,) = [c for c in model.causes if c.name == "grouted or bolted connection"]
+    loosened = cause.steps(np.array([5.0]))[0]
+    lost, more = -loosened[:2], loosened[MODES : MODES + 2]
+    assert (more > 0.2).all()
+    # the ground's share of the strain energy falls by a little
+    np.testing.assert_allclose(0.01 * np.expm1(more), 0.5 * lost, rtol=0.05)
+
+
 def test_a_clock_moves_all_frequencies_and_no_damping(model: ModelCauses) -> None:
     assert direction(model, "sensor: clock").tolist() == [1.0] * MODES + [0.0] * (2 * MODES)
     assert [c.misfit for c in model.causes if c.name == "sensor: clock"] == [0.0]  # it is no model's

@@ -269,3 +269,14 @@ def test_a_size_is_as_uncertain_as_the_scale_of_its_effect() -> None:
     other = Cause("mass", shaped, sizes, weights, misfit=1e-3)
     _, mid, (low, high) = _judge([(0.0, changed(precise, precise @ delta))], other, KINDS)
     assert np.log(high / low) < 0.1
+
+
+def test_a_cause_is_judged_at_the_onset_that_is_likely_and_not_at_the_largest_step() -> None:
+    """In louder noise an onset can be out of the question that has the largest step."""
+    J = np.array([1.0, 0.5, 2.0])
+    cause = Cause("mass", J[None], *sizes_about(0.1, 1.2))
+    info = np.stack([1e4 * np.eye(3), 1e4 * np.eye(3)])
+    score = np.stack([info[0] @ np.array([2.0, -3.0, 1.0]), info[1] @ (0.1 * J)])
+    change = replace(changed(info[0], score[0]), info=info, score=score, log_stake=np.array([-1e6, 0.0]))
+    assert explained_share(change, cause, KINDS) > 0.9
+    assert explained_share(replace(change, log_stake=np.zeros(2)), cause, KINDS) < 1e-6

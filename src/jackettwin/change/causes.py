@@ -66,6 +66,8 @@ _MISREAD = 0.05
 """Median size of a yaw error, sin² of the angle: 13°."""
 _OF_KIND = {"frequency": 0, "damping": MODES, "angle": 2 * MODES}
 """First index of each kind among the quantities of a model."""
+_DAMPED = 0.9
+"""Largest share of a damping ratio that an event takes: the ground has no more of one, but for its model."""
 _TRACE = 1e-5
 """Change of all logarithms below which a cause has no effect."""
 
@@ -278,11 +280,13 @@ def _seen_best(assembly: Assembly, shapes: FloatArray) -> tuple[str, ...]:
 def effect(event: Happening, base: Modes, after: Modes, eta: float, zeta: FloatArray) -> FloatArray:
     """Return the change of ln f, ln ζ and directions [rad] by one unit of an event, (3·MODES,).
 
-    The ground's part of ζ is ½η times its share of the strain energy.
+    The ground's part of ζ is ½η times its share of the strain energy. No event takes more than
+    ``_DAMPED`` of a ζ.
     """
     ln_f = np.log(after.modes.omega / base.modes.omega)
     more = 0.5 * eta * (after.soil_share - base.soil_share) + event.damps * np.maximum(-ln_f, 0.0)
-    return np.concatenate([ln_f, more / zeta, turned(base, after)]) / event.per
+    ln_zeta = np.log1p(np.maximum(more / zeta, -_DAMPED))
+    return np.concatenate([ln_f, ln_zeta, turned(base, after)]) / event.per
 
 
 def mixing(event: Happening, base: Modes, after: Modes, error: float) -> FloatArray:

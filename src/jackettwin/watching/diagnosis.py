@@ -100,16 +100,18 @@ def diagnose(
     sensor = next((cause for cause in causes if cause.louder.size), None)
     states = [(0.0, change), *([] if sensor is None else _in_noise(change, sensor))]
     judged = [_judge(states, cause, kinds) for cause in causes]
-    other = np.logaddexp.reduce([weight + _something(known, kinds) for weight, known in states])
+    free = [weight + _something(known, kinds) for weight, known in states]
+    other = np.logaddexp.reduce(free)
     priors = np.log([cause.prior for cause in causes] + [_OTHER_PRIOR])
     evidence = np.array([*(found[0] for found in judged), float(other)]) + priors
     sized = [k for k in np.argsort(-evidence) if k < len(causes) and not causes[k].louder.size]
-    noisy = max(states, key=lambda state: state[0])[1]
+    # a step looks like noise until its onset is met: what counts is the noise beside a change of any kind
+    noisy = states[int(np.argmax(free))][1]
     explained = explained_share(noisy, causes[sized[0]], kinds) if sized else float("nan")
     two: dict[str, float] = {}
     if explained < UNEXPLAINED or evidence.argmax() == len(causes):
-        free = [k for k in sized if causes[k].name not in alone]
-        two = _of_two(noisy, [causes[k] for k in free], evidence[free], kinds)
+        tried = [k for k in sized if causes[k].name not in alone]
+        two = _of_two(noisy, [causes[k] for k in tried], evidence[tried], kinds)
     evidence = np.append(evidence, [*two.values()])
     probability = np.exp(evidence - np.logaddexp.reduce(evidence)).tolist()
     told = [(c.name, *found[1:], c.unit, c.alike) for c, found in zip(causes, judged, strict=True)]
@@ -254,7 +256,7 @@ def _size_quantiles(
     whose loss by half moves modes as little as a fifth of the likely one.
     """
     sizes, logs = cause.sizes, by_size
-    scaled = _scaled(max(states, key=lambda state: state[0])[1], cause)
+    scaled = _scaled(states[0][1], cause)
     if scaled is not None:
         spread, draws = scaled
         factors = np.exp(spread * ndtri((np.arange(_FACTORS) + 0.5) / _FACTORS))
@@ -446,11 +448,11 @@ def _groups(
 
 
 def _best(change: Change) -> int:
-    """Return the index of the onset that best fits an arbitrary step."""
+    """Return the index of the onset that is likeliest of an arbitrary step, by its fit and its weight."""
     m = change.info.shape[-1]
     scale = 1e-6 * np.trace(change.info, axis1=1, axis2=2).max() * np.eye(m)
     solved = np.linalg.solve(change.info + scale, change.score[..., None])[..., 0]
-    return int(np.argmax(np.einsum("ti,ti->t", change.score, solved)))
+    return int(np.argmax(0.5 * np.einsum("ti,ti->t", change.score, solved) + change.log_stake))
 
 
 _POINTS = 401
