@@ -3,9 +3,11 @@
 Ten-minute records under waves and wind are simulated before and after a change, with the same few seeds, and
 identified as the twin does it. A season's row is one of these records: its ln f and ln ζ with their stated
 standard deviations, plus what the seasons of ``common.seasons`` do (tide, steel's temperature, wind, waves,
-what is unexplained). A season of records simulated one by one would be thousands. With the same seeds before
-and after, most of what the few records err by is in both, and with two rows whenever the rotor is parked a
-season does not know a change better than the records tell it.
+what is unexplained). A season of records simulated one by one would be hundreds. Hundreds of rows drawn from
+a few records know the mean of these, which errs by chance from the mean of all records: a watch that takes
+each row for a record of its own is surer of the difference than it can be. So the few records are centred on
+the poles of the simulated system, by what identification errs by on average in all states: their scatter is
+that of records, and so is the mean of many rows.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from common.seasons import Kind, Seasons, seasons, unexplained
 from jackettwin.change.changed_structures import Standing
@@ -35,6 +38,12 @@ HEIGHTS = (0.99, 0.62, 0.36)
 _LOSS = "maxwell-3:k=1,loss_factor=0.08,f0=0.3"
 _SEEN = 0.7
 """Share of the records before the change in which a mode must be found to be watched."""
+_FEW = 3
+"""Records below which a mode has no mean."""
+_HUBER, _REJECTED = 2.2, 4.5
+"""Standard deviations beyond which a record counts less and is rejected, as in ``jackettwin.watching``."""
+_NEAR = np.array([0.01, 1.0])
+"""Distances in ln f and ln ζ that weigh as much as another label does when modes and poles are paired."""
 
 
 @dataclass(frozen=True)
@@ -112,6 +121,68 @@ def identified(found: Record, model: TwinModel) -> Row:
     return out
 
 
+def poles_of(found: Record) -> dict[str, list[float]]:
+    """Return ln f and ln ζ of the simulated system's poles by label."""
+    return {
+        m["label"]: [float(np.log(m["frequency_hz"])), float(np.log(m["damping_ratio"]))]
+        for m in found.metadata["true_modes"]
+    }  # fmt: skip
+
+
+def centres(rows: list[Row], labels: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Return the mean of ln f and ln ζ of each mode and its standard error, (2, 2), as a watch sees it.
+
+    Records count by their stated accuracy, that of ζ at a common ζ on which it depends, and less beyond
+    ``_HUBER`` of their standard deviations.
+    """
+    out = {}
+    for label in labels:
+        seen = np.array([row[label] for row in rows if label in row])
+        if len(seen) < _FEW:
+            continue
+        f, f_std, z, z_std = seen.T
+        z_std = z_std * np.exp(0.5 * (z - np.median(z)))
+        out[label] = np.transpose([_mean_of(f, f_std), _mean_of(z, z_std)])
+    return out
+
+
+def _mean_of(x: np.ndarray, std: np.ndarray) -> tuple[float, float]:
+    """Return a mean by Huber's weights and its standard error, for standard deviations but for a factor."""
+    mean = float(np.median(x))
+    for _ in range(30):
+        off = np.abs(x - mean) / std
+        far = off / (1.4826 * np.median(off))
+        weight = np.minimum(1.0, _HUBER / np.maximum(far, 1e-9)) / std**2
+        weight[far > _REJECTED] = 0.0
+        mean = float(weight @ x / weight.sum())
+    return mean, float(np.sqrt(weight**2 @ (x - mean) ** 2) / weight.sum())
+
+
+def own_poles(
+    centre: dict[str, np.ndarray], poles: dict[str, list[float]], like: dict[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Return ln f and ln ζ of the pole that each identified mode is: of all pairings the nearest.
+
+    Parameters
+    ----------
+    like : what each mode had been beside its pole in another state, (2,); empty for nothing
+    """
+    known, names = np.array(list(poles.values())), list(centre)
+    seen = np.array([centre[name][0] - like.get(name, 0.0) for name in names])
+    off = np.sum(((seen[:, None] - known) / _NEAR) ** 2, axis=2)
+    off += [[float(name != pole) for pole in poles] for name in names]
+    chosen = linear_sum_assignment(off)[1]
+    return {name: known[k] for name, k in zip(names, chosen, strict=True)}
+
+
+def moved_to(rows: list[Row], by: dict[str, np.ndarray]) -> list[Row]:
+    """Return the rows with ln f and ln ζ of each mode moved; modes of which nothing is known are left out."""
+    return [
+        {n: [f + by[n][0], f_std, z + by[n][1], z_std] for n, (f, f_std, z, z_std) in row.items() if n in by}
+        for row in rows
+    ]  # fmt: skip
+
+
 def watched_labels(before: list[Row]) -> tuple[str, ...]:
     """Return the labels that are found often enough, by frequency; no member's own modes."""
     names = {n for row in before for n in row if not n.startswith(LOCAL)}
@@ -160,5 +231,8 @@ def louder(found: Record, times: float) -> Record:
 
 
 def late(found: Record, by: float) -> Record:
-    """Return the record of a clock that runs wrong by a share."""
-    return replace(found, sample_rate_hz=found.sample_rate_hz * (1.0 + by))
+    """Return the record of a clock that runs wrong by a share, and its poles as this clock shows them."""
+    faster = 1.0 + by
+    poles = [m | {"frequency_hz": faster * m["frequency_hz"]} for m in found.metadata["true_modes"]]
+    known = dict(found.metadata) | {"true_modes": poles}
+    return replace(found, sample_rate_hz=faster * found.sample_rate_hz, metadata=known)
