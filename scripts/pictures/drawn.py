@@ -114,7 +114,7 @@ def utilisations() -> go.Figure:
     said = subprocess.run([sys.executable, "-m", "jackettwin", *command], capture_output=True, check=False)
     rows = [row for row in json.loads(said.stdout)["members"] if row["part"] == "jacket"]
     structure = read_structure("jacket15")
-    figure = _figure("utilisation Uₘ [-]", "height of the member's middle above the mud line [m]")
+    figure = _figure("utilisation Uₘ [-]", "height above the mud line [m]")
     middle_m = {
         member.name: 0.5 * (structure.nodes[member.start][2] + structure.nodes[member.end][2])
         for member in structure.members
