@@ -7,7 +7,15 @@ import pytest
 
 from jackettwin.watching.design import RegressionPrior
 from jackettwin.watching.hours import Hours
-from jackettwin.watching.learning import LARGER, OCTAVES, LearntModels, _larger, _pooled, learn
+from jackettwin.watching.learning import (
+    LARGER,
+    OCTAVES,
+    LearntModels,
+    _beyond_chance,
+    _larger,
+    _pooled,
+    learn,
+)
 
 PRIOR = RegressionPrior(np.zeros((2, 1)), np.full((2, 1), 5.0))
 
@@ -110,3 +118,24 @@ def test_one_quantity_may_be_larger_than_it_seemed(rng: np.random.Generator) -> 
     raised = [memory.std / learnt.memories[0].std for memory in learnt.memories]
     for q in range(2):
         assert any(r[q] > 1.2 and r[1 - q] == pytest.approx(1.0) for r in raised)
+
+
+def test_correlations_by_chance_are_not_believed() -> None:
+    """Twelve values of four independent quantities: what is left predicts others better (Stein 1956)."""
+    drawn = np.random.default_rng(6).standard_normal((400, 12, 4))
+    loss = []
+    for x in drawn:
+        seen = np.corrcoef(x.T)
+        less = _beyond_chance(seen, np.full(4, 12.0), 5.0 / 17.0)
+        # Kullback-Leibler from independent ones, up to what is common to both
+        loss.append([np.linalg.slogdet(c)[1] + np.trace(np.linalg.inv(c)) for c in (seen, less)])
+    assert np.percentile(np.diff(loss), 95) < 0.0 and np.mean(np.diff(loss)) < -0.5
+
+
+def test_correlations_that_are_known_are_believed() -> None:
+    """At 0.9 from sixty values, the variance (1 − 0.81)²/60 is 0.07 % of the square."""
+    seen = np.array([[1.0, 0.9], [0.9, 1.0]])
+    assert _beyond_chance(seen, np.full(2, 60.0), 0.02)[0, 1] == pytest.approx(
+        0.9 * (1.0 - 0.19**2 / 60.0 / 0.81)
+    )
+    assert (_beyond_chance(np.array([[1.0, -0.2], [-0.2, 1.0]]), np.full(2, 12.0), 0.02) == np.eye(2)).all()

@@ -47,6 +47,8 @@ SHARED = np.append(CORRELATIONS, 0.995)
 """Correlations tried for slow processes if all modes share unmeasured weather."""
 _LEAST_OWN, _LEAST_OWN_SHARED = 0.02, 0.005
 """Smallest eigenvalue of a correlation matrix, and its value if modes share unmeasured weather."""
+_MOST_OWN = 0.5
+"""Largest value that the smallest eigenvalue is raised to where few values are known."""
 MOST_SPECTRA, MOST_TRIED = 3, 10
 _HANDICAP = 1.5
 """Reduction of the log likelihood of a model with the time constants of a better one, so that the selected
@@ -141,7 +143,8 @@ def learn(
 def _weighed(bases: list[Memory], hours: Hours, prior: RegressionPrior, hidden: bool) -> LearntModels:
     """Return models with the correlation between quantities, weighted by all quantities together."""
     m = len(prior.std)
-    fast, slow = _correlations(hours, bases[0], prior, hidden)
+    freedom = np.array([_freedom(hours, q, bases[0], prior) for q in range(m)])
+    fast, slow = _correlations(hours, bases[0], prior, np.maximum(freedom, _LEAST_FREEDOM), hidden)
     scored: list[tuple[float, Memory]] = []
     for base in bases:
         correlation = np.where((base.days < SLOW_DAYS)[:, None, None], fast, slow)
@@ -275,12 +278,16 @@ def _alone(own: Hours, prior: RegressionPrior, spectrum: Spectrum, near: _Fit | 
 
 
 def _correlations(
-    hours: Hours, memory: Memory, prior: RegressionPrior, hidden: bool
+    hours: Hours, memory: Memory, prior: RegressionPrior, freedom: FloatArray, hidden: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Return the correlations of fast and of slow processes, equal unless ``hidden``.
 
-    Each is the posterior mean of a pair. Fast and slow correlations are estimated in turn, twice, with the
-    others fixed.
+    Each is the posterior mean of a pair, reduced by what is chance. Fast and slow correlations are estimated
+    in turn, twice, with the others fixed.
+
+    Parameters
+    ----------
+    freedom : (m,) numbers of independent values of the slow processes
     """
     m = len(memory.scale)
     slow = memory.days >= SLOW_DAYS
@@ -293,7 +300,23 @@ def _correlations(
                 each = _pair_mean(own, pair, two, each, slow, SHARED)
                 each = _pair_mean(own, pair, two, each, ~slow, CORRELATIONS)
             result[:, i, j] = result[:, j, i] = [each[np.argmin(memory.days)], each[np.argmax(memory.days)]]
-    return _positive(result[0], _LEAST_OWN), _positive(result[1], _LEAST_OWN_SHARED if hidden else _LEAST_OWN)
+    # few values of many quantities always seem to leave a combination that hardly moves
+    floor = 0.0 if hidden else min((m + 1.0) / (float(np.median(freedom)) + m + 1.0), _MOST_OWN)
+    least = max(floor, _LEAST_OWN), max(floor, _LEAST_OWN_SHARED if hidden else _LEAST_OWN)
+    return _beyond_chance(result[0], freedom, least[0]), _beyond_chance(result[1], freedom, least[1])
+
+
+def _beyond_chance(correlation: FloatArray, freedom: FloatArray, least: float) -> FloatArray:
+    """Return correlations (m, m), each reduced by its variance (1 − ρ²)²/ν over its square, at most to 0.
+
+    This is the positive-part rule of James & Stein for each. Chance alone makes correlations of twice
+    1/√ν, each of which leaves a combination of modes that hardly seems to move, in which any drift is a
+    change. No eigenvalue is below ``least``.
+    """
+    off = correlation - np.eye(len(correlation))
+    chance = (1.0 - off**2) ** 2 / np.sqrt(np.outer(freedom, freedom))
+    reduced = off * np.maximum(1.0 - chance / np.maximum(off**2, 1e-12), 0.0)
+    return _positive(reduced + np.eye(len(off)), least)
 
 
 def _pair_mean(
