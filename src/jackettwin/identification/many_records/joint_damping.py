@@ -36,13 +36,13 @@ if TYPE_CHECKING:
 
 SCATTERS = (0.0, 0.2, 0.3, 0.4, 0.55, 0.75, 1.0)
 """Values of τ. Between 0 and the step of the nodes they cannot be distinguished."""
-NO_SCATTER, USUAL_SCATTER = 0.4, 0.85
+NO_SCATTER, USUAL_SCATTER = 0.3, 0.85
 """Prior probability that τ is 0, and standard deviation of its half-normal prior otherwise. Side-side damping
 of a parked turbine is 1 % in a calm and 7 % at 25 m/s, a τ of 0.5 over all winds; that of records of one wind
-does not scatter. Few records do not tell which: with a nominal 95 %, of 4 records with ζfT = 0.2 to 2, 97 to
-99 % hold the mean where nothing scatters, 94 to 96 % at a τ of 0.4 and 93 % at 0.6. Without a probability of
-none they are 98 to 100, 96 to 98 and 96 %, and the mean is 2 to 9 % too high where nothing scatters; with
-τ = 0 alone, 96 to 97, 80 and 75 %."""
+does not scatter. Few records do not tell which: with a nominal 95 %, of 4 records with ζfT = 0.2 to 2, 98 to
+99 % hold the mean where nothing scatters, 93 to 96 % at a τ of 0.4. Without a probability of none and a prior
+of 0.7 they are 98 to 100 and 96 to 98 %, and the mean is 2 to 9 % too high where nothing scatters; with τ = 0
+alone, 96 to 97 and 75 to 87 %."""
 PRIOR_RECORDS = 2.0
 """α: the prior of the noise counts as so many records."""
 MIXTURE_STEPS = 40
