@@ -58,6 +58,36 @@ def test_a_clock_without_zone_is_said_or_told(tmp_path: Path) -> None:
     assert refused.value.file == path.with_suffix(".json")
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "# Time zone: Europe/Berlin (local time)",
+        "# timezone=UTC+2",
+        "# Zeitzone: GMT +2 (Sommer)",
+        "# TZ: (UTC+02:00) Berlin",
+    ],
+)
+def test_a_zone_that_the_comments_name_is_the_clocks(line: str, tmp_path: Path) -> None:
+    """What lies beside the file is stronger than they are, and they than what is assumed of all files."""
+    path = written(tmp_path / "a.csv")
+    path.write_text(line + "\n" + path.read_text())
+    record = read_record(path, FileDefaults(timezone="+05:00"))
+    assert record.start_utc == TWELVE
+    assert "remarks" not in record.metadata
+    (first, *_) = read_record_pieces(path)
+    assert first.start_utc == TWELVE
+    path.with_suffix(".json").write_text(json.dumps({"clock": "+03:00"}))
+    assert read_record(path).start_utc == TWELVE - timedelta(hours=1)
+
+
+def test_a_comment_that_names_no_zone_is_not_taken_for_one(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv")
+    path.write_text("# clock: quartz, 20 ppm\n# Time zone: local\n" + path.read_text())
+    record = read_record(path)
+    assert record.start_utc == LOCAL.replace(tzinfo=UTC)
+    assert any("does not say its zone" in text for text in record.metadata["remarks"])
+
+
 @pytest.mark.parametrize("ending", ["Z", "+02:00"])
 def test_a_clock_with_zone_needs_no_telling(ending: str, tmp_path: Path) -> None:
     record = read_record(written(tmp_path / "a.csv", ending), FileDefaults(timezone="+05:00"))

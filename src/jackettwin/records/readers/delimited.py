@@ -1,6 +1,7 @@
 """Delimited text (CSV): header row, optional units row, numbers; the dialect is found, not asked.
 
-``#`` lines before the header, and whatever a logger writes above its table, may hold ``key: value``.
+``#`` lines before the header, and whatever a logger writes above its table, may hold ``key: value``:
+the rate, the start, the zone of the clock.
 Comma, semicolon, tab, bar or blanks separate; a decimal comma is understood wherever the comma does not
 separate. Units may stand in a row of their own or in brackets behind the names. Empty cells, ``nan``,
 ``NA``, ``null`` and the like are missing samples. Columns without names are numbered; the four lines on
@@ -22,7 +23,14 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
-from jackettwin.records.readers.stamps import has_zone, is_stamp, parse_time, stamps, with_one_stamp
+from jackettwin.records.readers.stamps import (
+    has_zone,
+    is_stamp,
+    parse_time,
+    read_zone,
+    stamps,
+    with_one_stamp,
+)
 from jackettwin.records.readers.table import ReadTable, climbs_evenly, table_from_columns
 
 if TYPE_CHECKING:
@@ -60,6 +68,7 @@ RATE_KEYS = (
     "fsamp",
     "abtastrate",
 )
+ZONE_KEYS = ("timezone", "zone", "tz", "clock", "zeitzone")
 ROWS = 15_000
 """Lines of a table when a file is read in pieces: as texts some ten megabytes."""
 MOST_LINES_ON_TOP = 200
@@ -252,7 +261,19 @@ def _known(comments: dict[str, str]) -> dict[str, Any]:
         known["sample_rate_hz"] = _rate(rate, comments.pop(rate))
     if "start_utc" in comments:
         known["start_utc"] = parse_time(comments.pop("start_utc"))
+    said = [text for key, text in comments.items() if re.sub(r"[ _-]+", "", key.lower()) in ZONE_KEYS]
+    known["clock"] = next((zone for text in said for zone in _zones(text)), None)
     return {**known, "metadata": comments}
+
+
+def _zones(text: str) -> Iterator[str]:
+    """Yield the zones that a comment names: ``Europe/Berlin (local time)``, ``(UTC+01:00) Berlin``."""
+    for part in (text, text.split("(")[0], *re.findall(r"\((.*?)\)", text)):
+        try:
+            read_zone(part)
+        except InputError:
+            continue
+        yield part.strip()
 
 
 def _rate(key: str, text: str) -> float:

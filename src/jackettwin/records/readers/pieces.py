@@ -116,13 +116,14 @@ def _split(
     """Yield tables cut at the boundaries, each with the time [s] and the start of its first row."""
     held: _Timed | None = None
     origin: datetime | None = None
-    zone, end = zone_of(said, defaults), seconds
+    end = seconds
     for chunk in _timed(tables, said, defaults):
         if held is None:
             origin = said.start_utc or chunk.table.start_utc
             held, end = chunk, _first_boundary(origin, seconds)
         else:
             held = held.followed_by(chunk)
+        zone = zone_of(held.table, said, defaults)
         if held.put_back and origin is not None and zone is not None and not held.table.zone_said:
             origin = in_utc(origin, zone)  # from here on the clock shows another time than the first
             held = replace(held, table=replace(held.table, zone_said=True))
@@ -168,7 +169,7 @@ def _put_back_s(
     """Return by how much the clock is put back until each of the times that it shows, (n_samples,) [s]."""
     if first.start_utc is None or first.zone_said or said.start_utc is not None:
         return np.zeros(shown_s.size)
-    zone = zone_of(said, defaults)
+    zone = zone_of(first, said, defaults)
     if zone is None:
         refuse_put_back(shown_s)
         return np.zeros(shown_s.size)

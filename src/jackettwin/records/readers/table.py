@@ -74,6 +74,8 @@ class ReadTable:
         Per name what the file says of the channel; units in ``unit``.
     zone_said : bool
         Whether ``start_utc`` is UTC; else it is what a clock shows whose zone the file does not say.
+    clock : str, optional
+        The zone of the clock that the file's comments name.
     times_s : (n_samples,) array, optional
         Stamps, if the file has them, from any origin.
     times_unit_said : bool
@@ -94,6 +96,7 @@ class ReadTable:
     sample_rate_hz: float | None = None
     start_utc: datetime | None = None
     zone_said: bool = True
+    clock: str | None = None
     times_s: FloatArray | None = None
     times_unit_said: bool = True
     metadata: Mapping[str, Any] = field(default_factory=dict)
@@ -354,7 +357,7 @@ def _start(
     """Return the start in UTC, the times since then, and remarks on the clock's zone and summer time."""
     if said.start_utc is not None or table.start_utc is None or table.zone_said:
         return said.start_utc or table.start_utc, table.times_s, ()
-    zone = zone_of(said, defaults)
+    zone = zone_of(table, said, defaults)
     if zone is None:
         refuse_put_back(table.times_s)
         return table.start_utc, table.times_s, (UNSAID,)
@@ -364,15 +367,15 @@ def _start(
     return steady(table.start_utc, table.times_s, zone)
 
 
-def zone_of(said: Description, defaults: FileDefaults) -> tzinfo | None:
-    """Return the zone of a clock that does not say it, from the description or what is assumed.
+def zone_of(table: ReadTable, said: Description, defaults: FileDefaults) -> tzinfo | None:
+    """Return the zone of a clock whose stamps do not: the description's, the file's, or what is assumed.
 
     Raises
     ------
     InputError
         If it is none.
     """
-    text = said.clock or defaults.timezone
+    text = said.clock or table.clock or defaults.timezone
     return None if text is None else read_zone(text, field="clock" if said.clock else "--timezone")
 
 
