@@ -21,8 +21,10 @@ from jackettwin.change.changed_structures import Standing, braces, happenings, w
 from jackettwin.change.ground import UNDESCRIBED, Ground, scour_loss
 from jackettwin.change.standing_modes import MODES, Modes, kept_share
 from jackettwin.change.working_rotor import NAME, WorkingRotor
+from jackettwin.constants import SEA_WATER_KG_M3
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
+from jackettwin.loads import Coefficients, Water
 from jackettwin.response import build_system
 from jackettwin.response.modes.modal import UndampedModes, undamped_modes
 from jackettwin.soil import Spring, Support
@@ -38,7 +40,7 @@ from jackettwin.structure import (
     assemble,
     check,
 )
-from jackettwin.twin import RotorSide
+from jackettwin.twin import RotorSide, WaterConfig
 from jackettwin.watching import diagnosis
 
 LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
@@ -217,6 +219,29 @@ def test_growth_is_a_ring_of_its_thickness_and_its_effect_is_known_from_millimet
     np.testing.assert_allclose(per_m[:, first], per_m[1, first], rtol=0.1)
     np.testing.assert_allclose(per_m[0, second], per_m[1, second], rtol=0.2)
     assert per_m[3, second] < 0.0 and per_m[2, second] > 0.5 * per_m[3, second]  # braces' own have crossed it
+
+
+def test_growth_is_compared_with_all_that_moves(model: ModelCauses, stands: Standing) -> None:
+    """Water that a twin states moves with the members as masses on their ends do: C_a = 1, half at either."""
+    structure = stands.structure
+    deep = structure.sea_level_z_m - min(z for _, _, z in structure.nodes.values())
+    around = WaterConfig(deep, Coefficients(added_mass=1.0), Water(), adds_mass=True, sea=None)
+
+    def displaced(member: Member) -> float:
+        return SEA_WATER_KG_M3 * 0.25 * np.pi * member.section_start.outer_diameter_m**2
+
+    masses = with_mass(stands, structure.members, displaced).structure
+    f, found = np.array([0.1806, 0.1835, 0.571]), {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(causes, "_DRAWS", 1)
+        patch.setattr(causes, "happenings", lambda of: [e for e in happenings(of) if e.family == "growth"])
+        for name, of, water in (("water", structure, around), ("masses", masses, None)):
+            wet = model_causes(of, LABELS, f, np.full(3, 0.01), water=water)
+            found[name] = direction(wet, "marine")[wet.labels.index("side_side_2")]
+    # braces in water move more, and the growth on them with them
+    assert found["water"] == pytest.approx(found["masses"], rel=0.05)
+    dry = direction(model, "marine")[model.labels.index("side_side_2")]
+    assert found["water"] < 1.1 * dry < 0.0
 
 
 def test_a_weakened_brace_keeps_seven_tenths_of_its_stiffness_and_all_of_its_mass() -> None:

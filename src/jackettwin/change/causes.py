@@ -25,6 +25,7 @@ from jackettwin.errors import InputError
 from jackettwin.loads import Coefficients, Water, mass_per_level
 from jackettwin.response import tide_slopes, track_modes, undamped_modes
 from jackettwin.structure import Assembly, Structure, assemble
+from jackettwin.twin import WaterConfig, in_water
 from jackettwin.watching import (
     Cause,
     Pattern,
@@ -132,6 +133,7 @@ def model_causes(
     seed: int = 0,
     ground: Ground = UNDESCRIBED,
     rotor: WorkingRotor | None = None,
+    water: WaterConfig | None = None,
 ) -> ModelCauses:
     """Return the possible causes for a structure whose modes are known by label.
 
@@ -140,6 +142,7 @@ def model_causes(
     labels, frequency_hz, damping_ratio : (n,) of the baseline; NaN where ζ is not known
     ground : what is known of it
     rotor : at work, if the modes are those of operation
+    water : whose mass moves with the structure, if the structure's own has none of it
 
     Raises
     ------
@@ -148,7 +151,7 @@ def model_causes(
     """
 
     def standing(structure: Structure) -> Assembly:
-        assembly = assemble(structure, gravity=gravity)
+        assembly = in_water(water, assemble(structure, gravity=gravity))
         return assembly if rotor is None else rotor.on(assembly)
 
     stiff = np.full(len(structure.reaction_nodes), _TYPICAL_STIFFNESS)
@@ -161,8 +164,8 @@ def model_causes(
     stands = _with_other_losses(stands, ground.loss_std, np.random.default_rng((78, seed)))
     fit = Modes.of(best, assembly, like=named).modes
     fitted = fit.frequency_hz
-    water = mass_per_level(assembly, Coefficients(), Water())
-    level = tide_slopes(fitted, fit.shapes, assembly.mass, water).relative
+    per_level = mass_per_level(assembly, Coefficients(), Water())
+    level = tide_slopes(fitted, fit.shapes, assembly.mass, per_level).relative
     zeta = np.full(MODES, 0.01)
     for place, value in zip(places, damping_ratio, strict=True):
         if place >= 0 and np.isfinite(value):

@@ -39,7 +39,7 @@ from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
 from jackettwin.files import StoredSchema, digest, null_for_nan
 from jackettwin.findings import Finding
-from jackettwin.twin import UNDATED, UNIT, Day, TwinModel, TwinState
+from jackettwin.twin import UNDATED, UNIT, Day, TwinModel, TwinState, WaterConfig
 from jackettwin.twin.config import WatchSettings
 from jackettwin.twin.exact_sums import ModeSums
 from jackettwin.twin.state import Operation
@@ -155,6 +155,7 @@ def judge(
     settings: WatchSettings = _USUAL,
     ground: Ground = UNDESCRIBED,
     rotor: Callable[[], WorkingRotor | None] = lambda: None,
+    water: WaterConfig | None = None,
 ) -> tuple[StoredMonitoring, tuple[Finding, ...]]:
     """Return the judgement of the days of a state, and new findings.
 
@@ -166,6 +167,7 @@ def judge(
     settings : the promise; days before ``settings.relearn`` are left out
     ground : what is known of it, for the causes of a change
     rotor : returns the rotor at work, if the twin's records are of operation; called when causes are needed
+    water : whose mass moves with the structure, if the structure's own has none of it
     """
     first = settings.relearn.isoformat() if settings.relearn else UNDATED
     fresh = StoredMonitoring(settings.baseline_days, settings.arl_years, relearn=first)
@@ -182,7 +184,7 @@ def judge(
     findings = []
     columns = known.columns or Columns.of(model, every, before)
     baseline = cache(lambda: history_of(columns, every, before))  # a year of days, rarely needed
-    causes = cache(lambda: _causes(model, baseline(), ground, rotor))  # takes seconds, rarely needed
+    causes = cache(lambda: _causes(model, baseline(), ground, rotor, water))  # takes seconds, rarely needed
     if known.learnt is None:
         watch = watch_after_baseline(baseline(), settings.arl_years, causes())
         known = replace(
@@ -215,13 +217,17 @@ def _known(
 
 
 def _causes(
-    model: TwinModel, baseline: History, ground: Ground, rotor: Callable[[], WorkingRotor | None]
+    model: TwinModel,
+    baseline: History,
+    ground: Ground,
+    rotor: Callable[[], WorkingRotor | None],
+    water: WaterConfig | None,
 ) -> ModelCauses | None:
     """Return the possible causes; None without a structure or if its modes were not seen."""
     if model.assembly is None:
         return None
     try:
-        return structure_causes(model.structure.structure, True, baseline, ground, rotor())
+        return structure_causes(model.structure.structure, True, baseline, ground, rotor(), water)
     except InputError:
         return None
 

@@ -19,6 +19,7 @@ from jackettwin.change.watch_document import alarm_document, alarm_sentence, cha
 from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
 from jackettwin.structure import Structure
+from jackettwin.twin import WaterConfig
 from jackettwin.watching import (
     Change,
     History,
@@ -80,6 +81,7 @@ def watch_table(
     gravity: bool = True,
     ground: Ground = UNDESCRIBED,
     rotor: WorkingRotor | None = None,
+    water: WaterConfig | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> MonitoredTable:
     """Monitor a table of modes; no row is used before its day.
@@ -92,6 +94,7 @@ def watch_table(
         for what patterns over modes tell by themselves
     ground : what is known of it
     rotor : at work, if the rows are of operation
+    water : whose mass moves with the structure, if the structure's own has none of it
     progress : told what is being done
 
     Raises
@@ -118,7 +121,9 @@ def watch_table(
     columns_to_watch(baseline)  # refuse before the causes are computed, which takes a while
     if structure is not None:
         progress("causes")
-    causes = None if structure is None else structure_causes(structure, gravity, baseline, ground, rotor)
+    causes = (
+        None if structure is None else structure_causes(structure, gravity, baseline, ground, rotor, water)
+    )
     progress("baseline")
     watch = watch_after_baseline(baseline, arl_years, causes)
     smallest = smallest_changes(watch, baseline, causes)
@@ -206,11 +211,18 @@ def statement(watched: MonitoredTable) -> str:
 
 
 def structure_causes(
-    structure: Structure, gravity: bool, baseline: History, ground: Ground, rotor: WorkingRotor | None
+    structure: Structure,
+    gravity: bool,
+    baseline: History,
+    ground: Ground,
+    rotor: WorkingRotor | None,
+    water: WaterConfig | None,
 ) -> ModelCauses:
     """Return the possible causes for a structure with these modes."""
     f, zeta = typical(baseline.frequency), typical(baseline.damping)
-    return model_causes(structure, baseline.labels, f, zeta, gravity=gravity, ground=ground, rotor=rotor)
+    return model_causes(
+        structure, baseline.labels, f, zeta, gravity=gravity, ground=ground, rotor=rotor, water=water
+    )
 
 
 def watch_after_baseline(baseline: History, arl_years: float, causes: ModelCauses | None) -> Watch:

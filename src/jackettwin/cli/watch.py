@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from jackettwin.change import Ground, WorkingRotor
     from jackettwin.change.modal_table import ModalTable
     from jackettwin.structure import Structure
+    from jackettwin.twin import WaterConfig
 
 
 class _Of(TypedDict, total=False):
@@ -35,6 +36,7 @@ class _Of(TypedDict, total=False):
     gravity: bool
     ground: Ground
     rotor: WorkingRotor | None
+    water: WaterConfig | None
 
 
 _SHOWN = 4
@@ -172,6 +174,7 @@ def _twin(path: Path) -> _Of:
         "gravity": config.gravity,
         "ground": Ground.of(config),
         "rotor": WorkingRotor.of(config),
+        "water": config.water,
     }
 
 

@@ -49,3 +49,4 @@ from .tolerances.registry import (
     directions as directions,
     suspects as suspects,
 )
+from .water import WaterConfig as WaterConfig, in_water as in_water

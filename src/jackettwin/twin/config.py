@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import date
 from math import hypot
 from pathlib import Path
@@ -21,7 +21,7 @@ from jackettwin.structure import Assembly, Rayleigh, Structure, assemble
 from jackettwin.twin.calibration import Calibrations
 from jackettwin.twin.life.settings import LifeSettings
 from jackettwin.twin.operation import OperationRule
-from jackettwin.twin.water import WaterConfig, moving_mass
+from jackettwin.twin.water import WaterConfig, in_water
 from jackettwin.updating import MOST_EVALUATIONS, Problem, Target, points_of
 
 Positive = Annotated[float, Field(gt=0.0)]
@@ -307,7 +307,4 @@ def assembled_dry(config: TwinConfig, *, gravity: bool = False) -> Assembly:
 
 def assembled(config: TwinConfig) -> Assembly:
     """Return the assembled structure of a twin, including the water's added mass."""
-    assembly = assembled_dry(config, gravity=config.gravity)
-    if config.water is None or not config.water.adds_mass:
-        return assembly
-    return replace(assembly, mass=assembly.mass + moving_mass(config.water, assembly).tocsc())
+    return in_water(config.water, assembled_dry(config, gravity=config.gravity))

@@ -51,6 +51,13 @@ def moving_mass(water: WaterConfig, assembly: Assembly) -> sp.csr_array:
     return water_mass(assembly, _points(water, assembly), water.carried)
 
 
+def in_water(water: WaterConfig | None, assembly: Assembly) -> Assembly:
+    """Return an assembled structure with the water's mass, if there is water and it adds some."""
+    if water is None or not water.adds_mass:
+        return assembly
+    return replace(assembly, mass=assembly.mass + moving_mass(water, assembly).tocsc())
+
+
 def still_loads(water: WaterConfig, assembly: Assembly) -> StillWater:
     """Return the weight of growth and water inside less buoyancy, on the DOFs and along the elements."""
     return still_water(assembly, _points(water, assembly), water.carried)

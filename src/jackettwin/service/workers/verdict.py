@@ -297,8 +297,9 @@ def watched(
     every = Days(identities, lambda day: engine.DAY.load(json.loads(documents[day])))
     before, ground = JUDGED.load(kept) if kept else None, Ground.of(twin.config)
     judged, new = judge(
-        twin.model, every, before, twin.config.watch, ground, partial(WorkingRotor.of, twin.config)
-    )
+        twin.model, every, before, twin.config.watch, ground, partial(WorkingRotor.of, twin.config),
+        twin.config.water,
+    )  # fmt: skip
     said = [(f"{last}T00:00:00+00:00", f) for f in new if f.severity == "info"]
     if (sees := sight_of(judged)) is not None:
         said.append((f"{min(identities)}T00:00:00+00:00", sees))
