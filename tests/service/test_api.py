@@ -46,6 +46,18 @@ def test_a_record_is_taken_observed_and_asked_for(client: TestClient, service: S
     )
 
 
+def test_what_a_turbine_does_now_is_the_mean_of_the_last_month(client: TestClient, service: Service) -> None:
+    """A change is in it after a month; in the mean of all records it never is whole."""
+    for k, days in enumerate((0, 20, 31)):
+        upload(client, k, start=hour(24 * days))
+    turn(service)
+    now = client.get("/api/v1/assets/wtg/twin").json()
+    assert (now["modes"][0]["records"], now["recent_modes"][0]["records"]) == (3, 2)
+    assert now["recent_modes"][0]["frequency_hz"] != now["modes"][0]["frequency_hz"]
+    at = client.get("/api/v1/assets/wtg/twin", params={"at": hour(24 * 20).isoformat()}).json()
+    assert at["recent_modes"] == at["modes"] and at["modes"][0]["records"] == 2
+
+
 def test_the_same_content_is_one_record_whatever_the_file_is_called(
     client: TestClient, service: Service
 ) -> None:

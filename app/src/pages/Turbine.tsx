@@ -23,14 +23,14 @@ const RECORDS = [{ title: "Records", numeric: true, show: (m: Schemas["TwinMode"
 /** Numbers that a manager asks for: first bending modes, ground, alarms, life; each leads to its page. */
 function Figures({ own, twin, alarms }: { own: Asset; twin: Twin; alarms: readonly Alarm[] }) {
   if (!twin.records) return null;
-  const { modes, parameters: known } = twin;
+  const { recent_modes: modes, parameters: known } = twin;
   const first = modes.filter((m) => m.label === "fore_aft_1" || m.label === "side_side_1");
   const ground = Object.values(known.parameters).find((p) => p.unit === "N/m");
   const open = alarms.filter((a) => !a.acknowledged_by && !a.closed_by && !a.muted_until_utc).length;
   const figures: [string, string, string, string][] = first.map((m) => [
     words(m.label),
     `${frequency(m.frequency_hz)} Hz`,
-    `damping ${percent(m.damping_ratio, m.damping_ratio_std)} % (90 %), mean of all`,
+    `damping ${percent(m.damping_ratio, m.damping_ratio_std)} % (90 %), mean of 30 days`,
     `timeline?mode=${m.label}`,
   ]);
   if (ground) {
@@ -157,10 +157,10 @@ export function Turbine({ asset }: PageProps) {
         <Card
           title="What it does now"
           more={<a href={assetUrl(asset, "timeline")}>Through time</a>}
-          note="Means of all records, whatever the rotor did."
+          note="Means of the 30 days up to the last record, whatever the rotor did."
         >
           <Shown of={twin} some={(data) => data.records} none={<NoRecord asset={asset} />} lines={7}>
-            {(data) => <ModeTable asset={asset} modes={data.modes} more={RECORDS} />}
+            {(data) => <ModeTable asset={asset} modes={data.recent_modes} more={RECORDS} />}
           </Shown>
         </Card>
         {known?.answers.length ? <Answers asset={asset} known={known} /> : null}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass
+from datetime import date, timedelta
 from threading import Lock
 
 from sqlalchemy import Connection
@@ -13,6 +14,9 @@ from jackettwin.store import assets, results
 
 _MOST = 2048
 """Number of turbines in the cache, of some kilobytes each: more than a farm has."""
+
+RECENT_DAYS = 30
+"""Days up to the last record whose mean is what a turbine does now; a change is whole in it after these."""
 
 Hashes = tuple[tuple[str, str], ...]
 
@@ -57,6 +61,23 @@ class DayCache:
         for state in states[-1:]:
             sums = workers.engine.with_day(sums, state.day, state.document)
         return SummedDays(sums, len(hashes), results.identity_of(by_day))
+
+    def recent(
+        self,
+        connection: Connection,
+        version: assets.Version,
+        model: workers.engine.TwinProfile,
+        day: str | None = None,
+    ) -> workers.engine.Sums:
+        """Return the sums over the last :data:`RECENT_DAYS` until the last day with records, or until one."""
+        key = (version.asset, version.model_hash)
+        last = max(results.state_hashes(connection, *key, day), default="")
+        # days without a date come before all others: they count only where there are no others
+        after = f"{date.fromisoformat(last) - timedelta(days=RECENT_DAYS)}" if last else None
+        sums = workers.engine.no_days(model)
+        for state in results.states_until(connection, *key, last, after=after):
+            sums = workers.engine.with_day(sums, state.day, state.document)
+        return sums
 
     def _keep(self, key: tuple[str, str], known: Hashes, sums: workers.engine.Sums) -> None:
         with self._lock:

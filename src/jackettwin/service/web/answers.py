@@ -164,6 +164,7 @@ def twin(
     model = profile(connection, service, version.asset, version.version)
     told = service.days.told(connection, version, model, last)
     known = workers.engine.knowledge(model, told.sums)
+    recent = workers.engine.knowledge(model, service.days.recent(connection, version, model, last))
     if at is None:
         known["parameters"] = results.find_supports(connection, version.asset, version.version)
     return TwinOut(
@@ -173,6 +174,7 @@ def twin(
         code_version=__version__,
         state_hash=told.state_hash,
         days=told.days,
+        recent_modes=recent["modes"],
         **known,
     )
 

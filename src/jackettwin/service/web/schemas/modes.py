@@ -173,7 +173,10 @@ class Knowledge(BaseModel):
 
 
 class TwinOut(BaseModel):
-    """State of the twin at a time: modes and parameters with intervals, and their records."""
+    """State of the twin at a time: modes and parameters with intervals, and their records.
+
+    ``modes`` are means of all records until then, ``recent_modes`` of the 30 days up to the last record.
+    """
 
     asset: str
     version: int
@@ -185,5 +188,6 @@ class TwinOut(BaseModel):
     first_utc: datetime | None
     last_utc: datetime | None
     modes: list[TwinMode]
+    recent_modes: list[TwinMode]
     parameters: Knowledge
     status: str
