@@ -23,9 +23,10 @@ Hashes = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class SummedDays:
-    """Summary of a turbine's days, their number, and the identity of their states."""
+    """Summary of a turbine's days and of its last month, their number, and the identity of their states."""
 
     sums: workers.engine.Sums
+    recent: workers.engine.Sums
     days: int
     state_hash: str
 
@@ -44,7 +45,7 @@ class DayCache:
         model: workers.engine.TwinProfile,
         day: str | None = None,
     ) -> SummedDays:
-        """Return the summary of all days, or those up to one; only new or changed days are read."""
+        """Return the summary of all days, or those up to one; only new, changed and recent days are read."""
         key = (version.asset, version.model_hash)
         by_day = results.state_hashes(connection, *key, day)
         hashes = tuple(by_day.items())
@@ -52,7 +53,14 @@ class DayCache:
             known, sums = self._past.get(key, ((), workers.engine.no_days(model)))
         if hashes[: len(known)] != known:
             known, sums = (), workers.engine.no_days(model)
-        states = results.states_until(connection, *key, day, after=known[-1][0] if known else None)
+        summed, before = known[-1][0] if known else None, _month_before(max(by_day, default=""))
+        after = None if summed is None or before is None else min(summed, before)
+        states = results.states_until(connection, *key, day, after=after)
+        recent = workers.engine.no_days(model)
+        for state in states:
+            if before is None or state.day > before:
+                recent = workers.engine.with_day(recent, state.day, state.document)
+        states = [state for state in states if summed is None or state.day > summed]
         for state in states[:-1]:
             sums = workers.engine.with_day(sums, state.day, state.document)
             known = (*known, (state.day, state.document_hash))
@@ -60,24 +68,7 @@ class DayCache:
             self._keep(key, known, sums)
         for state in states[-1:]:
             sums = workers.engine.with_day(sums, state.day, state.document)
-        return SummedDays(sums, len(hashes), results.identity_of(by_day))
-
-    def recent(
-        self,
-        connection: Connection,
-        version: assets.Version,
-        model: workers.engine.TwinProfile,
-        day: str | None = None,
-    ) -> workers.engine.Sums:
-        """Return the sums over the last :data:`RECENT_DAYS` until the last day with records, or until one."""
-        key = (version.asset, version.model_hash)
-        last = max(results.state_hashes(connection, *key, day), default="")
-        # days without a date come before all others: they count only where there are no others
-        after = f"{date.fromisoformat(last) - timedelta(days=RECENT_DAYS)}" if last else None
-        sums = workers.engine.no_days(model)
-        for state in results.states_until(connection, *key, last, after=after):
-            sums = workers.engine.with_day(sums, state.day, state.document)
-        return sums
+        return SummedDays(sums, recent, len(hashes), results.identity_of(by_day))
 
     def _keep(self, key: tuple[str, str], known: Hashes, sums: workers.engine.Sums) -> None:
         with self._lock:
@@ -85,3 +76,8 @@ class DayCache:
             self._past.move_to_end(key)
             while len(self._past) > _MOST:
                 self._past.popitem(last=False)
+
+
+def _month_before(day: str) -> str | None:
+    """Return the day before the last :data:`RECENT_DAYS`; none where days have no date."""
+    return f"{date.fromisoformat(day) - timedelta(days=RECENT_DAYS)}" if day else None

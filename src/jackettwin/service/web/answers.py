@@ -164,7 +164,6 @@ def twin(
     model = profile(connection, service, version.asset, version.version)
     told = service.days.told(connection, version, model, last)
     known = workers.engine.knowledge(model, told.sums)
-    recent = workers.engine.knowledge(model, service.days.recent(connection, version, model, last))
     if at is None:
         known["parameters"] = results.find_supports(connection, version.asset, version.version)
     return TwinOut(
@@ -174,7 +173,7 @@ def twin(
         code_version=__version__,
         state_hash=told.state_hash,
         days=told.days,
-        recent_modes=recent["modes"],
+        recent_modes=workers.engine.knowledge(model, told.recent)["modes"],
         **known,
     )
 
