@@ -17,7 +17,7 @@ from jackettwin.answers.result import (
     ModeAnswer,
     NextStep,
 )
-from jackettwin.report.tables.answers import budget_table, ground_table
+from jackettwin.report.tables.answers import budget_table, ground_table, laws_table
 from jackettwin.report.tables.sentences import _model, sentences, span_words
 from jackettwin.report.tables.sentences_damping import percent_words
 from jackettwin.study.scrutiny import Scrutiny
@@ -135,6 +135,13 @@ def test_a_law_is_not_called_the_only_one_tried_where_others_lock_a_damper() -> 
     assert said(replace(second, probability=None, locked=True)).endswith("; all others lock a damper.")
     assert said().endswith("; no other was tried.")
     assert "%" not in said()
+    none = [replace(one, probability=None, locked=True) for one in ANSWERS.laws]
+    lost = replace(ANSWERS, laws=tuple(none), probability_from="")
+    told = next(q for q in sentences(lost).questions if q.title == title).short[-1]
+    assert told.endswith("; like that of all 2 laws tried, its best fit locks a damper: none is recommended.")
+    laws = laws_table(lost)  # it was "recommended", and the others "do not use"; "no standard deviations"
+    assert {row[1] for row in laws.rows} == {"locks a damper: do not use"}
+    assert "as each of them locks a damper" in laws.caption
 
 
 def test_where_nothing_is_identified_that_is_said() -> None:

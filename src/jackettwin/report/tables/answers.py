@@ -91,7 +91,7 @@ def laws_table(a: Answers) -> Table:
     rows = tuple(
         (
             law.law,
-            "recommended" if law.law == a.law else "locks a damper: do not use" if law.locked else "",
+            "locks a damper: do not use" if law.locked else "recommended" if law.law == a.law else "",
             UNKNOWN if law.probability is None else fixed(100.0 * law.probability, 0),
             f"{law.misfit:.3g}",
         )
@@ -102,6 +102,8 @@ def laws_table(a: Answers) -> Table:
         "approximation": "by Laplace's approximation; --all-laws samples it",
         "": "not known, as the data have no standard deviations; ordered by cost",
     }[a.probability_from]
+    if laws and all(law.locked for law in laws):
+        source = f"not known, as each of them locks a damper; what is said of the ground is by {a.law}"
     caption = f"Which law? Probability of each with equal priors: {source}."
     marked = frozenset(i for i, law in enumerate(laws) if law.locked)
     return Table(caption, ("law", "", "probability [%]", "misfit, χ² or relative [-]"), rows, 2, marked)

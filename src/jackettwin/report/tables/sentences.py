@@ -344,6 +344,9 @@ def _law(a: Answers) -> list[str]:
     if law is None:
         return []
     why = family(law.law).words
+    if all(one.locked for one in a.laws):
+        like = "" if len(a.laws) == 1 else f"like that of all {count(len(a.laws), 'law')} tried, "
+        return [f"Law: {law.law} ({why}); {like}its best fit locks a damper: none is recommended."]
     if law.probability is None:
         return [f"Law: {law.law} ({why})."]
     others = [one for one in a.laws if one.law != a.law and one.probability is not None]
