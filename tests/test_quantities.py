@@ -6,6 +6,7 @@ from jackettwin.quantities import QUANTITIES, guess_quantity, to_si
 
 def test_every_si_unit_has_factor_one() -> None:
     assert all(to_si(name, q.unit) == 1.0 for name, q in QUANTITIES.items())
+    assert to_si("acceleration", "Gal") == to_si("acceleration", "gal") == 0.01  # Galileo: cm/s²
 
 
 def test_wrong_unit_names_value_allowed_and_remedy() -> None:

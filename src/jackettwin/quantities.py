@@ -37,6 +37,8 @@ QUANTITIES: dict[str, Quantity] = {
             ("mm/s^2", 1e-3),
             ("mm/s2", 1e-3),
             ("cm/s^2", 1e-2),
+            ("Gal", 1e-2),
+            ("gal", 1e-2),
         ),
     ),
     "velocity": Quantity("m/s", "velocity", "v", (("m s-1", 1.0), ("mm/s", 1e-3), ("cm/s", 1e-2))),
