@@ -21,8 +21,9 @@ import numpy as np
 from common.command import arguments
 from common.page import write_page
 
-from jackettwin.change.causes import _ONE_SIZE, effect, model_causes, repeated, seen_causes
+from jackettwin.change.causes import _ONE_SIZE, model_causes, seen_causes
 from jackettwin.change.changed_structures import Happening, Standing, happenings
+from jackettwin.change.event_effects import effect, repeated
 from jackettwin.change.standing_modes import MODES, Modes
 from jackettwin.decks import read_structure
 from jackettwin.response.modes.labels import LOCAL

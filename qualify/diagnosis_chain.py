@@ -38,8 +38,9 @@ from common.command import arguments
 from common.page import write_page
 from diagnosis import SENSORS, TIMES, Case, calibration, case, jackets, name_of, page, planted, truth
 
-from jackettwin.change.causes import _ONE_SIZE, ModelCauses, model_causes, repeated, seen_causes
+from jackettwin.change.causes import _ONE_SIZE, ModelCauses, model_causes, seen_causes
 from jackettwin.change.changed_structures import Happening, Standing
+from jackettwin.change.event_effects import repeated
 from jackettwin.change.standing_modes import Modes
 from jackettwin.records import Record
 from jackettwin.structure import Structure, assemble

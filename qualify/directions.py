@@ -22,8 +22,10 @@ from common.command import arguments
 from common.page import write_page
 from diagnosis import jackets, planted, truth
 
-from jackettwin.change.causes import _KEPT, _MISSES, effect, fitted_feet, mixing
+from jackettwin.change.causes import _KEPT, _MISSES
 from jackettwin.change.changed_structures import Happening, Standing
+from jackettwin.change.event_effects import effect, mixing
+from jackettwin.change.fitted_feet import fitted_feet
 from jackettwin.change.standing_modes import MODES, Modes
 from jackettwin.response.modes.labels import LOCAL
 from jackettwin.structure import Assembly, Material, Structure, assemble

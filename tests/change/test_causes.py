@@ -6,18 +6,15 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 
-from jackettwin.change import causes, standing_modes
+from jackettwin.change import causes, event_effects, standing_modes
 from jackettwin.change.causes import (
     ModelCauses,
-    fitted_feet,
-    mixing,
     model_causes,
-    namings,
-    repeated,
     seen_causes,
-    turned,
 )
 from jackettwin.change.changed_structures import Standing, braces, happenings, with_mass
+from jackettwin.change.event_effects import mixing, repeated, turned
+from jackettwin.change.fitted_feet import fitted_feet, namings
 from jackettwin.change.ground import UNDESCRIBED, Ground, scour_loss
 from jackettwin.change.standing_modes import MODES, Modes, kept_share
 from jackettwin.change.working_rotor import NAME, WorkingRotor
@@ -492,7 +489,7 @@ def test_modes_that_are_mixed_otherwise_divide_an_effect_otherwise(stands: Stand
     lost = -0.03 * stands.horizontal[0] * at.T @ at
     pairs = [(i, j) for i in range(MODES) for j in range(i)]
     for row, (i, j) in zip(rows, pairs, strict=True):
-        miss = 2.0 * causes._MIXES * 0.004 * np.sqrt(square[i] * square[j])
+        miss = 2.0 * event_effects._MIXES * 0.004 * np.sqrt(square[i] * square[j])
         _, vectors = np.linalg.eigh([[min(square[i], square[j]), miss], [miss, max(square[i], square[j])]])
         turned_by = np.arctan(np.abs(vectors[1, 0] / vectors[0, 0]))
         # the effect is of first order in 3 % of a foot; modes of neighbouring λ mix in second order, too

@@ -10,20 +10,19 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import pi
 
 import numpy as np
-from scipy.optimize import least_squares
 from scipy.special import ndtri
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.change.changed_structures import Happening, Standing, happenings
+from jackettwin.change.event_effects import bend, effect, happened, mixing, pairs_of, repeated
+from jackettwin.change.fitted_feet import on_its_feet
 from jackettwin.change.ground import UNDESCRIBED, Ground, Loss
 from jackettwin.change.standing_modes import MODES, NEAR, Modes, on_feet
 from jackettwin.change.working_rotor import WorkingRotor
-from jackettwin.errors import InputError
 from jackettwin.loads import Coefficients, Water, mass_per_level
-from jackettwin.response import tide_slopes, track_modes, undamped_modes
+from jackettwin.response import tide_slopes, undamped_modes
 from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.twin import WaterConfig, in_water
 from jackettwin.watching import (
@@ -38,16 +37,9 @@ from jackettwin.watching.causes import MISFIT
 _DRAWS = 6
 _TYPICAL_STIFFNESS = 2.5e9
 """Prior stiffness of a foot [N/m], within about a factor of e."""
-_NAMED_ON = (-1.2, 4.0)
-"""ln of softer and stiffer feet over the typical ones: of a soft ground, and nearly rigid."""
-_FEET_APART = 0.15
-"""Standard deviation of ln stiffness between feet: no site is uniform,
-and in a nearly round structure that rotates the axes of a pair."""
-_MODEL_ERROR = 0.01
-"""Prior relative error of a model's frequencies, with the weight of one mode."""
-_MISSES, _MIXES = 2.0, 0.5
-"""Errors of a model's directions over its error of frequencies, of each mode by itself and by other rotations
-of two modes than an equal error beside the diagonal makes: docs/verification/directions.md."""
+_MISSES = 2.0
+"""Errors of a model's directions over its error of frequencies, of each mode by itself:
+docs/verification/directions.md."""
 _LOSS = (0.08, 0.4)
 """Loss factor of the ground: median and spread in ln."""
 _ALIKE = 0.995
@@ -67,8 +59,6 @@ _MISREAD = 0.05
 """Median size of a yaw error, sin² of the angle: 13°."""
 _OF_KIND = {"frequency": 0, "damping": MODES, "angle": 2 * MODES}
 """First index of each kind among the quantities of a model."""
-_DAMPED = 0.9
-"""Largest share of a damping ratio that an event takes: the ground has no more of one, but for its model."""
 _TRACE = 1e-5
 """Change of all logarithms below which a cause has no effect."""
 
@@ -158,8 +148,8 @@ def model_causes(
     typical = Standing(structure, stiff, stiff, ground.scour_loss)
     assembly = standing(structure)
     rng = np.random.default_rng((77, seed))
-    named, places, stands, best, error = _on_its_feet(
-        typical, assembly, labels, frequency_hz, ground.stiffness, rng
+    named, places, stands, best, error = on_its_feet(
+        typical, assembly, labels, frequency_hz, ground.stiffness, _DRAWS, rng
     )
     stands = _with_other_losses(stands, ground.loss_std, np.random.default_rng((78, seed)))
     fit = Modes.of(best, assembly, like=named).modes
@@ -200,13 +190,13 @@ def model_causes(
             for often in [repeated(event, x) for x in event.solved] if event.spread > _ONE_SIZE else ():
                 then = modes_after(often, stands[:1], bases[:1])[0]
                 per_unit[often.per] = effect(often, bases[0], then, loss[0], zeta)
-            bend = _bend(per_unit)
+            bent = bend(per_unit)
             if event.or_else is not None:
                 other = replace(event, apply=event.or_else)
                 share = _evenly(len(stands), np.random.default_rng((79, seed)))[:, None]
                 draws = draws + share * (effects(other, modes_after(other, stands, bases)) - draws)
             cause = Cause(
-                event.name, draws, sizes, weights, event.unit, bent_at=bend[0], bend=bend[1],
+                event.name, draws, sizes, weights, event.unit, bent_at=bent[0], bend=bent[1],
                 misfit=min(_MISSES * error, MISFIT), mixing=mixing(event, bases[0], changed[0], error),
             )  # fmt: skip
             found.append((event.family, cause))
@@ -215,40 +205,6 @@ def model_causes(
     mixed = tuple(n for n, share in zip(named.labels, kept, strict=True) if share < _KEPT)
     best_seen = _seen_best(assembly, fit.shapes)
     return ModelCauses(named.labels, fitted, causes, tuple(traceless), mixed, level, best_seen)
-
-
-def _on_its_feet(
-    typical: Standing,
-    assembly: Assembly,
-    labels: Sequence[str],
-    frequency_hz: FloatArray,
-    stiffness: FloatArray | None,
-    rng: np.random.Generator,
-) -> tuple[Modes, list[int], list[Standing], Standing, float]:
-    """Return the modes as the labels name them, each label's place among them (−1: none), and the feet.
-
-    The feet are draws, the likeliest, and the model's relative error of frequencies on it: of a posterior of
-    the stiffness if there is one, else fitted to the frequencies.
-    """
-    every = [
-        (named, [named.labels.index(label) if label in named.labels else -1 for label in labels])
-        for named in namings(typical, assembly)
-    ]
-    most = max(sum(place >= 0 for place in places) for _, places in every)
-    if most == 0:
-        raise InputError(
-            "no mode of the model has such a label", field="label", value=", ".join(labels),
-            allowed=", ".join(every[0][0].labels), remedy="label modes as `jackettwin modes` does",
-        )  # fmt: skip
-    every = [one for one in every if sum(place >= 0 for place in one[1]) == most]
-    if stiffness is None:
-        fits = [fitted_feet(typical, *one, frequency_hz, assembly) for one in every]
-        feet, (named, places) = min(zip(fits, every, strict=True), key=lambda pair: pair[0].error)
-        return named, places, feet.drawn(typical, rng), feet.best(typical), feet.error
-    stands, best = drawn_standings(typical, stiffness)
-    errors = [_model_error(Modes.of(best, assembly, like=one), at, frequency_hz) for one, at in every]
-    error, (named, places) = min(zip(errors, every, strict=True), key=lambda pair: pair[0])
-    return named, places, stands, best, error
 
 
 def _with_other_losses(stands: Sequence[Standing], std: float, rng: np.random.Generator) -> list[Standing]:
@@ -278,199 +234,6 @@ def _seen_best(assembly: Assembly, shapes: FloatArray) -> tuple[str, ...]:
         node, axis = np.unravel_index(np.argmax(shape), shape.shape)
         out.append(f"an accelerometer at {names[node]} along {'xy'[axis]}")
     return tuple(out)
-
-
-def effect(event: Happening, base: Modes, after: Modes, eta: float, zeta: FloatArray) -> FloatArray:
-    """Return the change of ln f, ln ζ and directions [rad] by one unit of an event, (3·MODES,).
-
-    The ground's part of ζ is ½η times its share of the strain energy. No event takes more than
-    ``_DAMPED`` of a ζ.
-    """
-    ln_f = np.log(after.modes.omega / base.modes.omega)
-    more = 0.5 * eta * (after.soil_share - base.soil_share) + event.damps * np.maximum(-ln_f, 0.0)
-    ln_zeta = np.log1p(np.maximum(more / zeta, -_DAMPED))
-    return np.concatenate([ln_f, ln_zeta, turned(base, after)]) / event.per
-
-
-def mixing(event: Happening, base: Modes, after: Modes, error: float) -> FloatArray:
-    r"""Return what another rotation of two modes than the model's does to an event's effect, (k, 3·MODES).
-
-    With G = Φᵀ(δK − λδM)Φ of the event, a rotation φ of modes i and j changes its effect by
-
-    .. math:: φ G_{ij}/λ_i \text{ and } -φ G_{ij}/λ_j, \quad
-              \tan 2φ = \frac{4 ε_{ij} \sqrt{λ_iλ_j}}{|λ_i - λ_j|}
-
-    ε_ij is half of what the model misses beside the diagonal, as its error of frequencies is half of what it
-    misses on it. Members that differ from the drawing divide an effect otherwise between neighbouring modes;
-    only the sum is as certain as their energies.
-    """
-    left, _, right = np.linalg.svd(base.modes.shapes.T @ (base.mass @ after.modes.shapes))
-    turn, before = left @ right, base.modes.omega**2
-    G = (turn * after.modes.omega**2) @ turn.T - np.diag(before)
-    rows = []
-    for i in range(MODES):
-        for j in range(i):
-            apart = abs(before[i] - before[j]) / np.sqrt(before[i] * before[j])
-            phi = 0.5 * np.arctan2(4.0 * _MIXES * error, apart)
-            row = np.zeros(3 * MODES)
-            row[i], row[j] = phi * G[i, j] / before[i], -phi * G[i, j] / before[j]
-            rows.append(row / event.per)
-    return np.array(rows)
-
-
-def pairs_of(labels: Sequence[str]) -> list[tuple[int, int]]:
-    """Return the bending pairs among some modes: places of the fore-aft and of the side-side one."""
-    pairs = ((f"fore_aft_{n}", f"side_side_{n}") for n in range(1, MODES))
-    return [(labels.index(a), labels.index(b)) for a, b in pairs if a in labels and b in labels]
-
-
-def turned(base: Modes, after: Modes) -> FloatArray:
-    """Return the rotation of the lower mode of each bending pair [rad], from x towards y.
-
-    It is given at both modes of the pair, (MODES,); opposite directions are equivalent.
-    """
-    out = np.zeros(MODES)
-    for i, j in pairs_of(base.labels):
-        before, now = (m.direction[i if m.modes.omega[i] < m.modes.omega[j] else j] for m in (base, after))
-        out[[i, j]] = 0.5 * np.angle(np.exp(2j * (now - before)))
-    return out
-
-
-def repeated(event: Happening, times: float) -> Happening:
-    """Return an event so many times over, a whole number unless it has ``often``, and its effect per unit."""
-
-    def apply(standing: Standing) -> Standing:
-        for _ in range(int(times)):
-            standing = event.apply(standing)
-        return standing
-
-    often = apply if event.often is None else event.often(times)
-    return replace(event, apply=often, per=times * event.per)
-
-
-def happened(event: Happening, stands: Sequence[Standing]) -> list[Standing]:
-    """Return the stands of one structure after an event, which changes that whatever its feet."""
-    first = event.apply(stands[0])
-    if first.horizontal is stands[0].horizontal and first.vertical is stands[0].vertical:
-        return [replace(standing, structure=first.structure) for standing in stands]
-    return [first, *(replace(event.apply(s), structure=first.structure) for s in stands[1:])]
-
-
-def _bend(per_unit: dict[float, FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Return sizes, and the deviation of the change per unit from that of a single event.
-
-    Towards zero it goes on as between the two smallest.
-
-    Parameters
-    ----------
-    per_unit : by size, change by it per unit; first that of a single event, alone if it has one size
-    """
-    once = next(iter(per_unit.values()))
-    if len(per_unit) == 1:
-        return np.zeros(0), np.zeros((0, once.size))
-    sizes = sorted(per_unit)
-    bends = [per_unit[size] - once for size in sizes]
-    none = bends[0] - (bends[1] - bends[0]) * sizes[0] / (sizes[1] - sizes[0])
-    return np.array([0.0, *sizes]), np.array([none, *bends])
-
-
-def drawn_standings(typical: Standing, stiffness: FloatArray) -> tuple[list[Standing], Standing]:
-    """Return draws of the feet's stiffness from a posterior, (n, 2, n_feet), and their median."""
-    chosen = stiffness[np.linspace(0, len(stiffness) - 1, _DRAWS).astype(int)]
-    stands = [replace(typical, horizontal=h, vertical=v) for h, v in chosen]
-    horizontal, vertical = np.median(stiffness, axis=0)
-    return stands, replace(typical, horizontal=horizontal, vertical=vertical)
-
-
-def _model_error(fit: Modes, places: Sequence[int], frequency_hz: FloatArray) -> float:
-    """Return the relative error of a model's frequencies, combined with the prior of one mode's weight."""
-    known = [(place, f) for place, f in zip(places, frequency_hz, strict=True) if place >= 0]
-    off = np.array([np.log(fit.modes.frequency_hz[place] / f) for place, f in known])
-    return float(np.sqrt((off @ off + _MODEL_ERROR**2) / (len(known) + 1)))
-
-
-@dataclass(frozen=True)
-class FittedFeet:
-    """Stiffness of the feet that fits measured frequencies.
-
-    Attributes
-    ----------
-    log_factor : (2,)
-        ln of the likeliest horizontal and vertical stiffness over the typical one.
-    covariance : (2, 2)
-        Of these.
-    error : float
-        By how much the model misses frequencies: what the fit leaves over, with one mode's worth of what is
-        usual.
-    """
-
-    log_factor: FloatArray
-    covariance: FloatArray
-    error: float
-
-    def best(self, typical: Standing) -> Standing:
-        """Return the structure on its likeliest feet."""
-        return _on_softer(typical, self.log_factor)
-
-    def drawn(self, typical: Standing, rng: np.random.Generator) -> list[Standing]:
-        """Return draws of feet that agree with the measured frequencies."""
-        points = rng.multivariate_normal(self.log_factor, self.covariance, _DRAWS).clip(-3.5, 3.5)
-        drawn = [_on_softer(typical, x) for x in points]
-        apart = np.exp(_FEET_APART * rng.standard_normal((_DRAWS, 2, typical.horizontal.size)))
-        return [
-            replace(s, horizontal=s.horizontal * h, vertical=s.vertical * v)
-            for s, (h, v) in zip(drawn, apart, strict=True)
-        ]
-
-
-def fitted_feet(
-    typical: Standing, named: Modes, places: Sequence[int], frequency_hz: FloatArray, assembly: Assembly
-) -> FittedFeet:
-    """Return the stiffness of the feet that fits measured frequencies.
-
-    Parameters
-    ----------
-    places, frequency_hz : of measured modes among the named ones, −1 for none of them
-    """
-    known = [(place, f) for place, f in zip(places, frequency_hz, strict=True) if place >= 0]
-    near = undamped_modes(on_feet(typical, assembly), NEAR).shapes
-
-    def residual(x: FloatArray) -> FloatArray:
-        omega = Modes.of_each([_on_softer(typical, x)], assembly, [named], near)[0].modes.omega
-        off = [np.log(omega[place] / (2.0 * pi * f)) / _MODEL_ERROR for place, f in known]
-        return np.array([*off, *x])
-
-    fit = least_squares(residual, np.zeros(2), diff_step=[1e-3, 1e-3], max_nfev=12, bounds=(-3.0, 3.0))
-    slope, left = np.asarray(fit.jac), fit.fun[: len(known)]
-    error = np.sqrt((left @ left + 1.0) / (max(len(known) - 2, 0) + 1))  # in units of the usual
-    slope[: len(known)] /= error
-    return FittedFeet(fit.x, np.linalg.inv(slope.T @ slope), float(error) * _MODEL_ERROR)
-
-
-def namings(typical: Standing, assembly: Assembly) -> list[Modes]:
-    """Return the modes on typical feet by each of the names that they have there, on softer or stiffer feet.
-
-    On some feet the torsion of a tower crosses its second bending, and a mode that is both has the name of
-    either; measured modes are named on the feet that the structure has.
-    """
-    base = Modes.of(typical, assembly)
-    found = {base.labels: base}
-    for log_factor in _NAMED_ON:
-        other = Modes.of(_on_softer(typical, np.full(2, log_factor)), assembly)
-        order = track_modes(base.mass, base.modes.omega, base.modes.shapes, other.modes.shapes)
-        names = tuple(
-            other.labels[place] if place >= 0 else name
-            for place, name in zip(order, base.labels, strict=True)
-        )
-        if len({*names}) == len(names):
-            found.setdefault(names, replace(base, labels=names))
-    return list(found.values())
-
-
-def _on_softer(standing: Standing, log_factor: FloatArray) -> Standing:
-    """Return a structure on feet whose horizontal and vertical stiffness is changed by factors."""
-    h, v = np.exp(log_factor)
-    return replace(standing, horizontal=standing.horizontal * h, vertical=standing.vertical * v)
 
 
 def _families(found: list[tuple[str, Cause]]) -> tuple[Cause, ...]:
