@@ -10,6 +10,11 @@ from jackettwin.identification import ModalEstimate
 from jackettwin.response import Sensor
 from jackettwin.twin import Observation
 
+_TWO_MODES = {"perhaps_two", "hidden_mode"}
+"""Findings of a record on a second mode beside one that it has."""
+_SAME = 0.01
+"""Relative difference of frequencies within which a finding is of a mode; or its bandwidth, if wider."""
+
 
 @dataclass(frozen=True)
 class MeasuredMode:
@@ -79,3 +84,21 @@ def sensors_of(
             sensors = tuple(sensor for sensor in one.sensors if sensor.channel in order)
             return (sensors, [order[sensor.channel] for sensor in sensors]) if sensors else None
     return None
+
+
+def may_be_two(m: MeasuredMode, observations: Sequence[Observation]) -> bool:
+    """Tell whether the record of a mode's shape says that it may be a mixture of two modes.
+
+    Such a shape is no mode's of the model, so that it says nothing about it.
+    """
+    e = m.estimate
+    if e is None:
+        return False
+    seen = (one for one in observations if any(e is own for own, _ in one.modes.values()))
+    near = (
+        float(f.params["frequency_hz"]) / e.frequency_hz - 1.0  # type: ignore[arg-type]
+        for one in seen
+        for f in one.identification.findings
+        if f.code in _TWO_MODES
+    )
+    return any(abs(off) <= max(2.0 * e.damping_ratio, _SAME) for off in near)

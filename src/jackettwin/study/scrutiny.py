@@ -11,7 +11,7 @@ import numpy as np
 
 from jackettwin.files import named
 from jackettwin.response import observation_matrix
-from jackettwin.study.measurements import MeasuredMode, sensors_of
+from jackettwin.study.measurements import MeasuredMode, may_be_two, sensors_of
 from jackettwin.twin import Observation
 from jackettwin.updating import (
     USABLE,
@@ -122,7 +122,7 @@ def _shapes(
         if std is None and e is not None and e.unrefined is not None:
             # a refined shape has none of its own: that of the one before is no smaller
             std = e.unrefined.mode_shape_std
-        if seen is None or e is None or std is None or not np.isfinite(hz):
+        if seen is None or e is None or std is None or not np.isfinite(hz) or may_be_two(m, observations):
             continue
         sensors, rows = seen
         modes.append(CheckedShape(m.mode, e.mode_shape[rows], std[rows]))
