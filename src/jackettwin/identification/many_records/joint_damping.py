@@ -8,10 +8,10 @@ records. With ζ̄ the mean over records and weights w of the ranges of the nois
           + \alpha \sum_n w^0_n \ln w_n .
 
 The likelihood is integrated over τ with a half-normal prior and a probability of none; the interval is by
-likelihood ratio. If it is
-maximised over τ instead, the largest τ, by which a mean far above all records is explained, counts as much as
-none: four records of ζfT = 0.2 then have 1.16 times the true damping. The weights are those that the records
-show (expectation maximisation, as of a mixture); α keeps them near the prior w⁰ where there are few.
+likelihood ratio. If it is maximised over τ instead, the largest τ, by which a mean far above all records is
+explained, counts as much as none: four records of ζfT = 0.2 then have 1.16 times the true damping. The
+weights are those that the records show (expectation maximisation, as of a mixture); α keeps them near the
+prior w⁰ where there are few.
 """
 
 from __future__ import annotations
