@@ -27,6 +27,6 @@ def test_a_shape_that_its_record_takes_for_two_is_known(
     record = SimpleNamespace(
         modes={6: (own if seen else other, None)}, identification=SimpleNamespace(findings=(found,))
     )
-    measured = cast(MeasuredMode, SimpleNamespace(estimate=own))
+    measured = cast(MeasuredMode, SimpleNamespace(mode=6, estimate=own))
     assert may_be_two(measured, cast(Any, [record])) is expected
-    assert not may_be_two(cast(MeasuredMode, SimpleNamespace(estimate=None)), cast(Any, [record]))
+    assert not may_be_two(cast(MeasuredMode, SimpleNamespace(mode=6, estimate=None)), cast(Any, [record]))

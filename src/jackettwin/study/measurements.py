@@ -77,13 +77,12 @@ def sensors_of(
     m: MeasuredMode, observations: Sequence[Observation]
 ) -> tuple[tuple[Sensor, ...], list[int]] | None:
     """Return the sensors that a mode's shape was seen at, and their rows in it; None without a record."""
-    for one in observations:
-        estimate, _ = one.modes.get(m.mode, (None, None))
-        if estimate is not None and estimate is m.estimate:
-            order = {c.name: i for i, c in enumerate(one.identification.channels)}
-            sensors = tuple(sensor for sensor in one.sensors if sensor.channel in order)
-            return (sensors, [order[sensor.channel] for sensor in sensors]) if sensors else None
-    return None
+    one = _record_of(m, observations)
+    if one is None:
+        return None
+    order = {c.name: i for i, c in enumerate(one.identification.channels)}
+    sensors = tuple(sensor for sensor in one.sensors if sensor.channel in order)
+    return (sensors, [order[sensor.channel] for sensor in sensors]) if sensors else None
 
 
 def may_be_two(m: MeasuredMode, observations: Sequence[Observation]) -> bool:
@@ -91,14 +90,21 @@ def may_be_two(m: MeasuredMode, observations: Sequence[Observation]) -> bool:
 
     Such a shape is no mode's of the model, so that it says nothing about it.
     """
-    e = m.estimate
-    if e is None:
+    one, e = _record_of(m, observations), m.estimate
+    if one is None or e is None:
         return False
-    seen = (one for one in observations if any(e is own for own, _ in one.modes.values()))
     near = (
         float(f.params["frequency_hz"]) / e.frequency_hz - 1.0  # type: ignore[arg-type]
-        for one in seen
         for f in one.identification.findings
         if f.code in _TWO_MODES
     )
     return any(abs(off) <= max(2.0 * e.damping_ratio, _SAME) for off in near)
+
+
+def _record_of(m: MeasuredMode, observations: Sequence[Observation]) -> Observation | None:
+    """Return the record that a mode's shape was seen in; None if it was in none."""
+    for one in observations:
+        estimate, _ = one.modes.get(m.mode, (None, None))
+        if estimate is not None and estimate is m.estimate:
+            return one
+    return None
