@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.signals import of_fast_length
 
 if TYPE_CHECKING:
@@ -53,8 +54,8 @@ def less_information(
     there = np.isfinite(y)
     if not modes or there.all(axis=0).mean() < 1.0 - MAX_MISSING:
         return found
-    used = of_fast_length(np.where(there, y, 0.0))
-    lines, duration_s = np.fft.rfft(used, axis=1), used.shape[1] / sample_rate_hz
+    used = of_fast_length(y)
+    lines, duration_s = transform(used), used.shape[1] / sample_rate_hz
     hz = np.arange(lines.shape[1]) / duration_s
     for i, mode in enumerate(modes):
         if mode.log_covariance is None:

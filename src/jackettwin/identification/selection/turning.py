@@ -22,6 +22,7 @@ from scipy.linalg import LinAlgError, eigh
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.findings import Finding
 from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.signals import of_fast_length
 
 if TYPE_CHECKING:
@@ -59,8 +60,8 @@ def turning_doubted(
     ]
     if not pairs or len(y) < 2:
         return tuple(modes)
-    used = of_fast_length(np.where(np.isfinite(y), y, 0.0))
-    lines = np.fft.rfft(used, axis=1)
+    used = of_fast_length(y)
+    lines = transform(used)
     hz = np.arange(lines.shape[1]) * (sample_rate_hz / used.shape[1])
     for i, j in pairs:
         low, high = modes[i].frequency_hz * (1.0 - BAND), modes[j].frequency_hz * (1.0 + BAND)
