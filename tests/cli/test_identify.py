@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import re
 from dataclasses import replace
@@ -161,6 +162,9 @@ def test_a_report_under_another_name_than_that_of_a_page_is_refused(tmp_path: Pa
 
 def test_modes_are_laid_beside_a_structure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The record is read once, though shapes in UFF need its directions before the computation."""
+    # what tells long files apart has its own: whether it is imported already depends on the tests before
+    long_records = importlib.import_module("jackettwin.study.many_records.long_records")
+    assert long_records.read_record_pieces is not None
     monkeypatch.setattr("jackettwin.records.read_record_pieces", None)
     record, out = str(RECORDS / "kv_U12_s311.parquet"), tmp_path / "m.uff"
     code, text, _ = run(record, "--quick", "--model", "jacket15", "--json", "--out", str(out))
